@@ -39,7 +39,8 @@ struct ConstantRow {
     I_C_F = p_FCcm_F + vector,
     inverse_reduced_I_F = I_C_F + matrix,
     frame_drag = inverse_reduced_I_F + matrix,
-    sim_slow = frame_drag + number,
+    airframe = frame_drag + number,  ///< AirframeRow
+    sim_slow = airframe + AirframeRow::count,
     kp = sim_slow + number,
     fastest = kp + number,               ///< maximum speed of the motors
     motors_sim_slow = fastest + number,  ///< divisor of a commanded speed
@@ -76,6 +77,7 @@ struct Laws {
   RotorConventions conventions;
   laws::RotorLaws::Places acting;  ///< laws of any vehicle; zero coefficients for the others
   bool drag;                       ///< drag of any frame
+  bool airframe;                   ///< other laws of any airframe
   bool upright;                    ///< see GyrostatStep
   bool normals_turn;               ///< see GyrostatStep
 

@@ -108,4 +108,11 @@ QUADCORE_LAW laws::LawsOfRotors<T> laws_of_rotors(const Laws& laws, const Table<
           constants.number(ConstantRow::sim_slow)};
 }
 
+/// Return the airframe's coefficients as a function of AirframeRow.
+template <class T>
+QUADCORE_LAW auto coefficients_of_airframe(const Table<T>& constants) {
+  return [&constants](std::size_t row)
+             QUADCORE_INLINED { return constants.number(ConstantRow::airframe + row); };
+}
+
 }  // namespace quadcore::batch

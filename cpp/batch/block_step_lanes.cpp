@@ -1,5 +1,6 @@
 #include "lanes/runge_kutta.hpp"
 #include "laws/ahead.hpp"
+#include "laws/airframe.hpp"
 #include "laws/gyrostat.hpp"
 #include "laws/motor_torque.hpp"
 #include "masks.hpp"
@@ -53,6 +54,11 @@ QUADCORE_LAW void differentiate(const Block& block, const Places& at, const doub
   }
   Vec3<T> tau_F =
       -1.0 * laws::cross(frames.w_WF_F, constants.matrix(ConstantRow::I_C_F) * frames.w_WF_F);
+  if (block.laws.airframe) {
+    const auto k = coefficients_of_airframe(constants);
+    f_F = f_F + laws::airframe_force(k, frames.v_WCcm_F);
+    tau_F = tau_F + laws::airframe_torque(k, frames.v_WCcm_F, frames.w_WF_F);
+  }
   T joint_torques[most_rotors];
   for (std::size_t i = 0; i < block.rotors; ++i) {
     const Rotors<T, upright> rotors{block, frames, constants, state, at.turns, i};

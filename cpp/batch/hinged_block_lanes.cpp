@@ -1,4 +1,5 @@
 #include "hinged_block.hpp"
+#include "laws/airframe.hpp"
 #include "laws/motor_torque.hpp"
 #include "masks.hpp"
 #include "ode/beside_contact.hpp"
@@ -60,6 +61,14 @@ QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodie
     f_F = laws::parasitic_drag(v_F, laws::square_root(laws::dot(v_F, v_F)),
                                constants.number(ConstantRow::frame_drag));
     tau_F = laws::cross(center.p_FCcm_F, f_F);
+  }
+  if (block.laws.airframe) {
+    const HingedCenter<T> center(bodies, frame);
+    const auto k = coefficients_of_airframe(constants);
+    const Vec3<T> air_F = laws::airframe_force(k, center.v_WCcm_F);
+    f_F = f_F + air_F;
+    tau_F = tau_F + laws::cross(center.p_FCcm_F, air_F) +
+            laws::airframe_torque(k, center.v_WCcm_F, frame.w_WF_F);
   }
   for (std::size_t i = 0; i < block.rotors; ++i) {
     const MovingRotor<T> rotor(bodies, frame, i);

@@ -42,6 +42,7 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
     constants_differ_ |= vehicle->constants != first->constants;
     laws_.acting |= vehicle->laws.acting;
     laws_.drag |= vehicle->laws.drag;
+    laws_.airframe |= vehicle->laws.airframe;
     bounds_.fastest = std::min(bounds_.fastest, vehicle->fastest);
     bounds_.no_tilt |= vehicle->no_tilt;
     bounds_.reach = std::max(bounds_.reach, vehicle->reach);

@@ -105,7 +105,7 @@ std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
   const bool like_gazebo = simulation.engine_name() == "gazebo11";
   if (!(like_gazebo || simulation.engine_name() == "eigen") || !told.all_quiet ||
       rotors > most_rotors || told.rotor_forces.size() > 1 || told.frame_drags.size() > 1 ||
-      told.motor_torques.size() != 1) {
+      told.airframes.size() > 1 || told.motor_torques.size() != 1) {
     return std::nullopt;
   }
   LaneVehicle vehicle{{}, unbounded, false, -unbounded, {}, {}, {}};
@@ -124,6 +124,12 @@ std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
   for (const FrameDrag& law : told.frame_drags) {
     vehicle.laws.drag = true;
     rows.put(Row::frame_drag, law.coefficient);
+  }
+  for (const AirframeLaws& law : told.airframes) {
+    vehicle.laws.airframe = true;
+    for (std::size_t row = 0; row < AirframeRow::count; ++row) {
+      rows.put(Row::airframe + row, law.coefficients[row]);
+    }
   }
   for (const RotorForces& law : told.rotor_forces) {
     vehicle.laws.conventions = law.conventions;

@@ -42,7 +42,8 @@ def assert_same(read, log):
 def test_a_log_goes_round_all_formats_bit_for_bit(log, tmp_path):
     log.ignored[:] = ["libcamera.so", "thing"]
     log.to_csv(tmp_path / "a.csv")
-    for source, target in (("a.csv", "b.mat"), ("b.mat", "c.bag"), ("c.bag", "d.csv")):
+    formats = "a.csv", "b.mat", "c.bag", "c.ros2", "d.csv"
+    for source, target in zip(formats, formats[1:]):
         done = ran("convert", str(tmp_path / source), str(tmp_path / target))
         assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
         assert_same(qc.Log.of_file(tmp_path / target), log)
@@ -204,3 +205,57 @@ def test_the_rosbag_of_ros_reads_what_was_written(log, tmp_path):
     height, time, md5 = last.split()
     assert float(height) == log.position[-1, 2] and int(time) == round(log.time[-1] * 1e9)
     assert md5 == "4b7d974086d4060e7db4613a7e6c3ba4"
+
+
+def test_ros_2_reads_a_bag_with_its_own_types(log, tmp_path):
+    """The rows of a log, with one store of types of rosbags that quadcore does not use itself."""
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
+    folder = tmp_path / "flight.ros2"
+    log.to_file(folder)
+    assert sorted(file.name for file in folder.iterdir()) == ["flight.ros2.db3", "metadata.yaml"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["flight.ros2"]
+    with AnyReader([folder], default_typestore=get_typestore(Stores.ROS2_FOXY)) as reader:
+        kinds = {c.topic: c.msgtype for c in reader.connections}
+        assert kinds["/clock"] == "rosgraph_msgs/msg/Clock"
+        assert kinds["/tf"] == "tf2_msgs/msg/TFMessage"
+        wanted = [c for c in reader.connections if c.topic == "/ground_truth/odometry"]
+        read = [reader.deserialize(data, c.msgtype) for c, _, data in reader.messages(wanted)]
+    assert len(read) == len(log.time)
+    assert not hasattr(read[0].header, "seq")  # which ROS 2 does not have
+    for message, time, position, rates in zip(read, log.time, log.position, log.angular_velocity):
+        stamp, p, w = message.header.stamp, message.pose.pose.position, message.twist.twist.angular
+        assert stamp.sec + stamp.nanosec / 1e9 == pytest.approx(time, abs=1e-9)
+        assert ((p.x, p.y, p.z), (w.x, w.y, w.z)) == (tuple(position), tuple(rates))
+
+
+def test_a_ros_2_bag_of_the_node_topics_alone_is_a_log(log, tmp_path, monkeypatch):
+    monkeypatch.setattr(bag, "LOG", "/another/topic")  # as a recording of ros2 bag has it
+    log.to_file(tmp_path / "flight.ros2")
+    monkeypatch.undo()
+    folder = (tmp_path / "flight.ros2").rename(tmp_path / "rosbag2_2026_01_31")
+    read = qc.Log.of_file(folder)
+    np.testing.assert_array_equal(read.position, log.position)
+    np.testing.assert_array_equal(read.rotor_velocity, log.rotor_velocity)
+
+
+def test_a_ros_2_bag_replaces_nothing_and_leaves_no_parts(log, tmp_path, monkeypatch):
+    (tmp_path / "flight.ros2").mkdir()
+    with pytest.raises(qc.InputError, match=r"flight.ros2: exists already. Name a new folder."):
+        log.to_file(tmp_path / "flight.ros2")
+
+    def fail(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(bag, "_write_rows", fail)
+    with pytest.raises(qc.InputError, match=r"b\.ros2: cannot be written: No space left on device"):
+        log.to_file(tmp_path / "b.ros2")
+    assert [file.name for file in tmp_path.iterdir()] == ["flight.ros2"]
+
+
+def test_a_damaged_ros_2_bag_is_one_line(log, tmp_path):
+    log.to_file(tmp_path / "flight.ros2")
+    (tmp_path / "flight.ros2" / "flight.ros2.db3").write_bytes(b"no database")
+    error = refused("convert", str(tmp_path / "flight.ros2"), str(tmp_path / "a.csv"))
+    assert "is no bag that can be read" in error

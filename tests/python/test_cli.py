@@ -174,7 +174,7 @@ def test_the_same_seed_gives_the_same_bytes():
         ("run quadrotor --commands nope.csv", "nope.csv: cannot be read"),
         ("run quadrotor --commands w.csv", "w.csv:3: w2 is nan"),
         ("run quadrotor --log nope/log.csv", "there is no folder nope"),
-        ("run quadrotor --log log.txt", "log.txt: logs are written to .csv, .mat, .bag"),
+        ("run quadrotor --log log.txt", "log.txt: logs are written to .csv, .mat, .bag, .ros2 files"),
         ("run quadrotor --out w.csv", "w.csv: cannot be made: File exists"),
     ],
 )

@@ -13,6 +13,7 @@ from vehicles import (
     FLAPPING,
     HAND,
     HEIGHT,
+    MOTOR,
     ODD,
     Rotor,
     start,
@@ -20,6 +21,8 @@ from vehicles import (
     vehicle,
     wrenches,
 )
+
+import quadcore as qc
 
 DRAGS = ("induced", "translational", "profile", "parasitic")
 EVERYTHING = {**AIR, **DRAG, **FLAPPING}
@@ -268,3 +271,84 @@ def test_a_motion_without_velocity_meets_no_drag(hangar):
         found = upright(hangar, air, ODD, spin=(400, -300, 200, 100))
         for term in (*DRAGS, "flapping"):
             assert not found[term].any()
+
+
+AIRFRAME = {
+    "axialDragCoeff": 0.05,
+    "bodyDragXCoeff": 0.004,
+    "bodyDragYCoeff": 0.005,
+    "bodyDragZCoeff": 0.006,
+    "hubMomentCoeff": 0.02,
+    "rollDampingCoeff": 0.001,
+    "pitchDampingCoeff": 0.002,
+    "yawDampingCoeff": 0.003,
+    "constantTorqueX": 0.01,
+    "constantTorqueY": -0.02,
+    "constantTorqueZ": 0.03,
+}
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_airframe_feels_its_drag_hub_moment_damping_and_constant_torque(hangar, engine):
+    simulation = hangar(vehicle(air={**AIR, **AIRFRAME, "dragModel": "chapter2"}), engine=engine)
+    start(simulation, linear_velocity=[2, -3, 6], angular_velocity=[1, 2, -1])
+    # The frame is level, and its centre of mass lies on its z axis, 2.5 mm above the origin.
+    v = np.array([2, -3, 6]) + np.cross([1, 2, -1], [0, 0, center_of_mass(simulation)])
+    force = [-0.004 * abs(v[0]) * v[0], -0.005 * abs(v[1]) * v[1], -(0.05 + 0.006 * v[2]) * v[2]]
+    hub = -0.02 * np.cross([0, 0, 1], v)
+    torque = hub - np.array([0.001 * 1, 0.002 * 2, 0.003 * -1]) + [0.01, -0.02, 0.03]
+    found = wrenches(simulation)["parasitic"]
+    assert np.allclose(found, [*force, *torque], rtol=0, atol=1e-7)  # Gazebo rounds masses
+
+
+def center_of_mass(simulation):
+    """The height of the centre of mass above the origin of the frame, from the masses."""
+    rotors = 4 * 0.01
+    return rotors * HEIGHT / simulation.mass
+
+
+def test_the_airframes_drag_takes_energy_and_is_none_in_still_air_that_moves_along(
+    hangar, tmp_path
+):
+    names = [name for name in AIRFRAME if "Torque" not in name and name != "hubMomentCoeff"]
+    air = {**AIR, **{name: AIRFRAME[name] for name in names}, "dragModel": "chapter2"}
+    for v, w in (((2, -3, 6), (1, 2, -1)), ((-1, 4, -2), (-3, 0.5, 2))):
+        simulation = start(hangar(vehicle(air=air)), linear_velocity=v, angular_velocity=w)
+        force = wrenches(simulation)["parasitic"]
+        center = np.array(v) + np.cross(w, [0, 0, center_of_mass(simulation)])
+        assert force[:3] @ center < 0 and force[3:] @ np.array(w) < 0
+
+
+def test_factors_scale_thrust_and_reaction_of_each_rotor(hangar):
+    factors = [1, 0.5, 0, 1.2]
+    for engine in ENGINES:
+        plain = start(hangar(vehicle(air=AIR), engine=engine), rotor_velocity=[400] * 4)
+        air = {**AIR, "rotorFactors": " ".join(map(str, factors))}
+        scaled = start(hangar(vehicle(air=air), engine=engine), rotor_velocity=[400] * 4)
+        whole, part = wrenches(plain), wrenches(scaled)
+        assert part["thrust"][2] == pytest.approx(whole["thrust"][2] * sum(factors) / 4)
+        assert part["reaction"][5] == pytest.approx(whole["reaction"][5] * sum(factors) / 4)
+
+
+def test_a_wrong_number_of_factors_is_refused(hangar):
+    with pytest.raises(qc.InputError, match="<rotorFactors> has 3 numbers, but the plugin has 4"):
+        hangar(vehicle(air={**AIR, "rotorFactors": "1 1 1"}))
+
+
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_a_batch_with_airframes_moves_like_its_simulations(hangar, tmp_path, engine):
+    file = tmp_path / "m.urdf"
+    file.write_text(vehicle(air={**AIR, "dragModel": "chapter2"}, motor=MOTOR))
+    values = {f"aerodynamic.{name}": [0, 0.3 * v, v] for name, v in AIRFRAME.items()}
+    batch = qc.BatchSimulation(
+        file, n=3, engine=engine, parameters={k: np.array(v) for k, v in values.items()}
+    )
+    batch.step(np.tile([440.0, -430, 450, -420], (3, 1)), 200)
+    for i in range(3):
+        simulation = qc.Simulation(
+            file, engine=engine, parameters={name: v[i] for name, v in values.items()}
+        )
+        simulation.command([440, -430, 450, -420])
+        simulation.step(200)
+        assert np.array_equal(batch.state.position[i], simulation.state.position)
+        assert np.array_equal(batch.state.angular_velocity[i], simulation.state.angular_velocity)

@@ -53,7 +53,7 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            (["a.txt", "-o", "b.html"], "a.txt: logs are read from .csv, .mat, .bag files"),
+            (["a.txt", "-o", "b.html"], "a.txt: logs are read from .csv, .mat, .bag, .ros2 files"),
             (["no.csv", "-o", "b.html"], "no.csv: cannot be read"),
             (["t.csv", "-o", "b.html"], "t.csv:1: no log of quadcore: the columns are 't,w1'"),
             (["word.csv", "-o", "b.html"], "word.csv:3: column 't' holds 'x'; write"),

@@ -108,6 +108,7 @@ GyrostatStep EigenEngine::view() {
   g.laws_turn = false;
   g.rotor_forces = {};
   g.frame_drags = {};
+  g.airframes = {};
   g.motor_torques = {};
   g.evaluate_rest = nullptr;
   g.refuse = [](void* engine) { static_cast<EigenEngine*>(engine)->refuse(); };
@@ -125,6 +126,7 @@ void EigenEngine::step(double time, double dt, const ForceField& forces) {
     step_.laws_turn |= (law.acting & laws::in_link_axes) != 0;
   }
   put(told.frame_drags, step_.frame_drags);
+  put(told.airframes, step_.airframes);
   put(told.motor_torques, step_.motor_torques);
   step_.evaluate_rest = nullptr;
   if (!told.complete) {

@@ -84,6 +84,7 @@ struct GyrostatStep {
   bool laws_turn;  ///< whether some force law or normal requires the rotations
   Laws<RotorForces> rotor_forces;
   Laws<FrameDrag> frame_drags;
+  Laws<AirframeLaws> airframes;
   Laws<MotorTorques> motor_torques;
   /// Evaluates everything except the force laws in the present motion: clears the frame's loads and
   /// adds to them and to the rotors' loads. Null if there is nothing else and no wind.

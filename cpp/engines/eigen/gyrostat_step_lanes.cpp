@@ -1,6 +1,7 @@
 #include "gyrostat_motion.hpp"
 #include "gyrostat_step.hpp"
 #include "lanes/runge_kutta.hpp"
+#include "laws/airframe.hpp"
 #include "laws/gyrostat.hpp"
 #include "laws/motor_torque.hpp"
 #include "laws/rotor_forces.hpp"
@@ -78,6 +79,24 @@ QUADCORE_LAW Four drag_of_frame(const GyrostatStep& g, const FrameOfState& frame
   return sum;
 }
 
+QUADCORE_LAW Four four(const Vec3<double>& a) { return Four{a.x, a.y, a.z, 0}; }
+
+/// Add the loads of the airframe's laws other than parasitic drag.
+template <bool rest>
+QUADCORE_LAW void add_airframe(const GyrostatStep& g, const FrameOfState& frame, Four& f_F,
+                               Four& tau_F) {
+  if (g.airframes.count == 0) return;
+  Four v_ACcm_F = frame.v_WCcm_F;
+  if constexpr (rest) v_ACcm_F = v_ACcm_F - laws::load_vector(g.frame + FrameNumber::v_WA_F);
+  const Vec3<double> V_F{v_ACcm_F[0], v_ACcm_F[1], v_ACcm_F[2]};
+  const Vec3<double> w_F{frame.w_WF_F[0], frame.w_WF_F[1], frame.w_WF_F[2]};
+  g.airframes.for_each([&](const AirframeLaws& law) QUADCORE_INLINED {
+    const auto k = [&](std::size_t row) QUADCORE_INLINED { return law.coefficients[row]; };
+    f_F = f_F + four(laws::airframe_force(k, V_F));
+    tau_F = tau_F + four(laws::airframe_torque(k, V_F, w_F));
+  });
+}
+
 /// Compute the rate of a state with the rotations in the table, and fill the table for the next
 /// stage. `rest` is whether there are loads other than force laws.
 template <int W, Stage stage, bool rest, bool upright>
@@ -89,6 +108,7 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
 
   Four f_F = drag_of_frame<rest>(g, frame);
   Four tau_F = -laws::cross(frame.w_WF_F, laws::load_columns(g.I_C_F) * frame.w_WF_F);
+  add_airframe<rest>(g, frame, f_F, tau_F);
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const Rotors rotors{g, frame, state, i};
     laws::RotorLoads<T> loads = loads_of<T, rest>(g, rotors);

@@ -17,7 +17,7 @@ struct Thrust {
   template <class Given>
   static Thrust from(const Given& given) {
     const auto [k] = given.numbers(tags);
-    return {given.density_ratio * k};
+    return {given.density_ratio * given.factor * k};
   }
 
   template <class Motion>
@@ -41,7 +41,7 @@ struct Reaction {
   template <class Given>
   static Reaction from(const Given& given) {
     const auto [b] = given.numbers(tags);
-    return {given.density_ratio * given.reaction_sign * b};
+    return {given.density_ratio * given.reaction_sign * given.factor * b};
   }
 
   QUADCORE_LAW T torque(const RotorDisc<T>& disc) const {

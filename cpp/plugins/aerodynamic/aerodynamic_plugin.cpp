@@ -130,6 +130,7 @@ class AerodynamicPlugin final : public Plugin {
           vector(laws::parasitic_drag(components(v_ACcm_F), v_ACcm_F.norm(), config_.frame_drag)),
           kinematics.p_FCcm_F);
     }
+    if (config_.has_airframe) add_airframe(kinematics, loads);
   }
 
   void laws(ConstPluginState state, ForceLaws& laws) const override {
@@ -139,12 +140,23 @@ class AerodynamicPlugin final : public Plugin {
     laws.quiet.push_back({fastest_, drag_may_drive(),
                           follows_any_turn_ ? memory + kAliased : nullptr, memory + kDriven});
     if (config_.frame_drag != 0) laws.frame_drags.push_back({config_.frame_drag});
+    if (config_.has_airframe) laws.airframes.push_back({config_.airframe.data()});
   }
 
  private:
   RotorForces with_shares(RotorForces law, ConstPluginState state) const {
     law.shares = effectiveness_.in_force(state);
     return law;
+  }
+
+  /// Add the airframe's other laws. They belong to the term of its parasitic drag.
+  void add_airframe(const Kinematics& kinematics, Loads& loads) const {
+    const auto k = [&](std::size_t row) { return config_.airframe[row]; };
+    const Vec3<double> V_F = components(kinematics.v_WCcm_F - kinematics.v_WA_F);
+    const std::size_t term = RotorLaws::place_of<laws::ParasiticDrag>();
+    loads.add_frame_force(term, vector(laws::airframe_force(k, V_F)), kinematics.p_FCcm_F);
+    loads.add_frame_torque(term,
+                           vector(laws::airframe_torque(k, V_F, components(kinematics.w_WF_F))));
   }
 
   /// Add the same loads rotor by rotor and law by law.
@@ -237,6 +249,12 @@ PluginDescriptor describe() {
               "torque opposes the spin, the motors transmit it to the frame, and unpowered "
               "rotors coast to a stop")
               .from("(2.11)"),
+          T::numbers("rotorFactors", "", "",
+                     "factor of thrust and reaction torque of each rotor, for damaged or unequal "
+                     "propellers")
+              .at_least(0)
+              .scaling(Effect::thrust)
+              .or_absent("1 for each"),
           T::link("frameLink", "link that takes the reaction torque; part of the root body"),
           T::joints("rotorJoints", "the rotors"),
           T::text("effectiveness", "effectiveness",

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <string>
 #include <vector>
 
+#include "laws/airframe.hpp"
 #include "laws/rotor_forces.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin/rotor_rows.hpp"
@@ -20,6 +23,7 @@ struct Given {
   double density_ratio;  ///< air density divided by that of the coefficients
   double reaction_sign;  ///< 1 for a reaction torque along the spin, -1 opposing it
   bool appendix;         ///< dragModel
+  double factor = 1;     ///< factor of thrust and reaction torque of one rotor
 
   /// Return the values of a force law's tags.
   template <std::size_t n>
@@ -35,15 +39,14 @@ struct RotorTable {
   RotorLaws::Places acting;
   RotorRows<RotorLaws::rows> coefficients;
 
-  RotorTable(const RotorLaws::Coefficients<double>& of_each, const std::vector<std::size_t>& rotors,
-             std::size_t rotor_count)
-      : acting(RotorLaws::acting(of_each)), coefficients(rotor_count) {
+  explicit RotorTable(std::size_t rotor_count) : acting(0), coefficients(rotor_count) {}
+
+  void put(std::size_t rotor, const RotorLaws::Coefficients<double>& of_rotor) {
+    acting |= RotorLaws::acting(of_rotor);
     double numbers[RotorLaws::rows];
-    std::memcpy(numbers, &of_each, sizeof numbers);
-    for (const std::size_t i : rotors) {
-      for (std::size_t row = 0; row < RotorLaws::rows; ++row) {
-        coefficients.number(row, i) = numbers[row];
-      }
+    std::memcpy(numbers, &of_rotor, sizeof numbers);
+    for (std::size_t row = 0; row < RotorLaws::rows; ++row) {
+      coefficients.number(row, rotor) = numbers[row];
     }
   }
 };
@@ -59,6 +62,8 @@ class Config {
   bool on_rotor;  ///< reactionOn
   std::vector<std::size_t> rotors;
   double frame_drag;  ///< parasitic drag of chapter 2 on the airframe [N s^2/m^2]
+  std::array<double, AirframeRow::count> airframe;  ///< AirframeRow
+  bool has_airframe;                                ///< whether any of these is not 0
 
   /// Return the laws for evaluation in steps. They point into this object, and to no fractions.
   RotorForces summed() const { return law(summed_); }
@@ -72,8 +77,38 @@ class Config {
         on_rotor(reacts_on_rotor(p)),
         rotors(p.joints("rotorJoints")),
         frame_drag(appendix ? 0 : laws::ParasiticDrag<double>::coefficient(given)),
-        separate_(RotorLaws::from(given), rotors, rotor_count),
-        summed_(RotorLaws::with_one_drag(RotorLaws::from(given)), rotors, rotor_count) {}
+        airframe(read_airframe(given)),
+        has_airframe(
+            std::any_of(airframe.begin(), airframe.end(), [](double k) { return k != 0; })),
+        separate_(rotor_count),
+        summed_(rotor_count) {
+    const std::vector<double> factors = read_factors(p);
+    for (std::size_t j = 0; j < rotors.size(); ++j) {
+      Given of_rotor = given;
+      of_rotor.factor = factors[j];
+      separate_.put(rotors[j], RotorLaws::from(of_rotor));
+      summed_.put(rotors[j], RotorLaws::with_one_drag(RotorLaws::from(of_rotor)));
+    }
+  }
+
+  /// Only the drag depends on the density of the air.
+  static std::array<double, AirframeRow::count> read_airframe(const Given& given) {
+    std::array<double, AirframeRow::count> k = given.numbers(laws::Airframe::tags);
+    for (std::size_t row = 0; row < AirframeRow::torque; ++row) k[row] *= given.density_ratio;
+    return k;
+  }
+
+  /// Return the factor of each rotor of the plugin.
+  std::vector<double> read_factors(const Parameters& p) const {
+    const std::vector<double>& factors = p.numbers("rotorFactors");
+    if (factors.empty()) return std::vector<double>(rotors.size(), 1);
+    if (factors.size() != rotors.size()) {
+      throw InputError("<rotorFactors> has " + std::to_string(factors.size()) +
+                       " numbers, but the plugin has " + std::to_string(rotors.size()) +
+                       " rotors. Write one number for each rotor.");
+    }
+    return factors;
+  }
 
   static bool reacts_on_rotor(const Parameters& p) { return p.choice("reactionOn") == "rotor"; }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "laws/airframe.hpp"
 #include "laws/rotor_laws.hpp"
 #include "quadcore/plugin/tags.hpp"
 
@@ -34,6 +35,7 @@ inline TagSpec spec_of(const laws::Tag& tag) {
 inline std::vector<TagSpec> tags_of_laws_and(const std::vector<TagSpec>& others) {
   std::vector<TagSpec> tags;
   for_each_tag([&](const laws::Tag& tag) { tags.push_back(spec_of(tag)); });
+  for (const laws::Tag& tag : laws::Airframe::tags) tags.push_back(spec_of(tag));
   tags.insert(tags.end(), others.begin(), others.end());
   return tags;
 }

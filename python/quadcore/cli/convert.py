@@ -11,7 +11,7 @@ from ..support.output_files import remove_leftovers
 from . import options
 from .parser import add_command
 
-_FORMATS = ".csv, .mat or .bag"
+_FORMATS = ".csv, .mat, .bag, or a ROS 2 bag .ros2"
 
 
 def register(commands: Any) -> None:
@@ -24,6 +24,7 @@ def register(commands: Any) -> None:
         """
         quadcore convert out/spiral/log.csv spiral.mat
         quadcore convert flight.ulg flight.csv
+        quadcore convert out/spiral/log.csv spiral.ros2
         """,
     )
     parser.add_argument(

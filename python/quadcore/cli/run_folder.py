@@ -13,6 +13,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from .. import __version__
 from .._core import InputError
+from ..formats.bag import is_ros2
 from ..model.description import read_model
 from ..model.visuals import read_vehicle
 from ..report.drawn_vehicle import DrawnVehicle, DrawnWorld
@@ -103,7 +104,7 @@ def write_results(
 
 def find_logs(path: Path) -> List[Path]:
     """Find the logs of a folder that `run` or `compare` wrote; a file is one log."""
-    if not path.is_dir():
+    if not path.is_dir() or is_ros2(path):
         return [path]
     logs = [path / LOG] if is_file(path / LOG) else sorted((path / "logs").glob("*.csv"))
     if not logs:

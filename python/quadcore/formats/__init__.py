@@ -36,6 +36,7 @@ FORMATS: Dict[str, Format] = {
         mat.read_commands, mat.write_log, mat.read_log, partial(DeferredLogFile, mat.write_log)
     ),
     ".bag": Format(bag.read_commands, bag.write_log, bag.read_log, bag.make_log_file),
+    bag.ROS2: Format(bag.read_commands, bag.write_ros2_log, bag.read_log, bag.make_log_file),
 }
 
 
@@ -54,7 +55,7 @@ def find_format(path: Path, what: str) -> Format:
     InputError
         If no format has this suffix.
     """
-    found = FORMATS.get(path.suffix.lower())
+    found = FORMATS.get(bag.ROS2 if bag.is_ros2(path) else path.suffix.lower())
     if found is None:
         raise InputError(f"{path}: {what} {', '.join(FORMATS)} files")
     return found

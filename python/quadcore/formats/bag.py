@@ -1,9 +1,11 @@
-"""Bags of ROS 1 with the topics of the node, and with the rows of the log."""
+"""Bags of ROS 1 and ROS 2 with the topics of the node, and with the rows of the log."""
 
 from __future__ import annotations
 
 import contextlib
+import os
 import shutil
+from inspect import signature
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
 
@@ -28,6 +30,9 @@ from .whole_log import DeferredLogFile
 
 LOG = "/quadcore/log"
 """Topic of complete rows. Its first label contains the columns, the others the ignored parts."""
+
+ROS2 = ".ros2"
+"""Suffix of the folders of ROS 2 bags that quadcore writes; it reads those of other names, too."""
 
 _ON_A_WALL = 1e6  # s; times beyond are of a clock on the wall, and counted from the bag's first
 
@@ -158,7 +163,7 @@ def read_messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
     """Read the messages of some connections with their times, ns."""
     if not found:  # which would be all
         return
-    for connection in found:
+    for connection in () if is_ros2(bag.path) else found:
         written = sorted(bag.indexes[connection.id], key=lambda e: (e.chunk_pos, e.offset))
         times = [entry.time for entry in written]
         if times != sorted(times):
@@ -166,18 +171,25 @@ def read_messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
                 f"{bag.path}: {connection.topic}: its time goes back, as after a reset; record "
                 "each flight in a bag of its own"
             )
-    store = Messages().store
+    messages = Messages(2 if is_ros2(bag.path) else 1)
     for connection, time, data in bag.messages(found):
-        yield time, store.deserialize_ros1(data, connection.msgtype)
+        yield time, messages.deserialise(data, connection.msgtype)
+
+
+def is_ros2(path: Path) -> bool:
+    """Return whether a path is the folder of a ROS 2 bag."""
+    return (path / "metadata.yaml").is_file()
 
 
 @contextlib.contextmanager
 def open_bag(path: Path) -> Iterator[Any]:
     """Open a bag; raises `InputError` if rosbags is missing or the file is damaged."""
     with require_package("a bag", "rosbags", "bag"):
-        from rosbags.rosbag1 import Reader
+        from rosbags import rosbag1, rosbag2
+    Reader = rosbag2.Reader if is_ros2(path) else rosbag1.Reader
     try:
-        check_regular(path)
+        if not is_ros2(path):
+            check_regular(path)
         with Reader(path) as bag:
             yield bag
     except QuadcoreError:
@@ -198,25 +210,62 @@ def write_log(
     """Write the messages that the node would publish, and each row of the log on `LOG`."""
     with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Writer
-    messages = Messages()
+    with _name_temporary(path) as part, atomic_write(path) as stream:
+        with Writer(part) as bag:  # to a name only
+            _write_rows(bag, Messages(), columns, table, wrenches, ignored)
+        with part.open("rb") as written:
+            shutil.copyfileobj(written, stream)
+
+
+def write_ros2_log(
+    path: Path,
+    columns: Sequence[str],
+    table: np.ndarray,
+    wrenches: Mapping[str, np.ndarray],
+    ignored: Sequence[str],
+) -> None:
+    """Write the same messages as `write_log` to a new folder, a ROS 2 bag."""
+    with require_package("a bag", "rosbags", "bag"):
+        from rosbags.rosbag2 import Writer
+    if path.exists():
+        raise InputError(f"{path}: exists already. Name a new folder.")
+    part = name_temporary(path)
+    # Newer versions of rosbags ask for the version of the format: that of ROS 2 Humble.
+    options: Dict[str, Any] = {"version": 8} if "version" in signature(Writer).parameters else {}
+    try:
+        part.mkdir()
+        with Writer(part / path.name, **options) as bag:  # whose name is that of the files in it
+            _write_rows(bag, Messages(2), columns, table, wrenches, ignored)
+        os.rename(part / path.name, path)
+    except OSError as error:
+        raise make_write_error(path, error) from error
+    finally:
+        with interrupts.hold_signals():
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def _write_rows(
+    bag: Any,
+    messages: Messages,
+    columns: Sequence[str],
+    table: np.ndarray,
+    wrenches: Mapping[str, np.ndarray],
+    ignored: Sequence[str],
+) -> None:
     names = [*columns, *list_wrench_columns(list(wrenches))]
     layout = messages.make_layout([",".join(names), *ignored], len(names))
     of_node = messages.make_node_messages(columns)
-    with _name_temporary(path) as part, atomic_write(path) as stream:
-        with Writer(part) as bag:  # to a name only
-            connections = {
-                topic: bag.add_connection(topic, kind, typestore=messages.store)
-                for topic, kind in [*of_node.kinds.items(), (LOG, ARRAY)]
-            }
-            for i, state in enumerate(table):
-                acting = [wrench[i : i + 1] for wrench in wrenches.values()]
-                row = np.hstack([table[i : i + 1], *acting])[0] if acting else state
-                whole = (LOG, state[0], messages.make_array(row, layout))
-                for topic, time, data in [*of_node.at(state), whole]:
-                    # A bag has no message at time 0.
-                    bag.write(connections[topic], max(1, round(time * 1e9)), data)
-        with part.open("rb") as written:
-            shutil.copyfileobj(written, stream)
+    connections = {
+        topic: bag.add_connection(topic, kind, typestore=messages.store)
+        for topic, kind in [*of_node.kinds.items(), (LOG, ARRAY)]
+    }
+    for i, state in enumerate(table):
+        acting = [wrench[i : i + 1] for wrench in wrenches.values()]
+        row = np.hstack([table[i : i + 1], *acting])[0] if acting else state
+        whole = (LOG, state[0], messages.make_array(row, layout))
+        for topic, time, data in [*of_node.at(state), whole]:
+            # A bag of ROS 1 has no message at time 0.
+            bag.write(connections[topic], max(1, round(time * 1e9)), data)
 
 
 @contextlib.contextmanager
@@ -239,4 +288,5 @@ def make_log_file(
 ) -> DeferredLogFile:
     """Make a recorder; raises `InputError` if the package rosbags is missing."""
     Messages()
-    return DeferredLogFile(write_log, path, columns, terms, ignored)
+    write = write_ros2_log if path.suffix.lower() == ROS2 else write_log
+    return DeferredLogFile(write, path, columns, terms, ignored)

@@ -1,4 +1,4 @@
-"""Messages of ROS 1 as bytes, made from rows of a log."""
+"""Messages of ROS 1 or ROS 2 as bytes, made from rows of a log."""
 
 from __future__ import annotations
 
@@ -25,12 +25,26 @@ class NodeMessages(NamedTuple):
 
 
 class Messages:
-    """Serialiser of messages; raises `InputError` if the package rosbags is missing."""
+    """Serialiser of messages.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    ros
+        Version of ROS, 1 or 2. The names of the messages are the same in both.
+
+    Raises
+    ------
+    InputError
+        If the package rosbags is missing.
+    """
+
+    def __init__(self, ros: int = 1) -> None:
         with require_package("a bag", "rosbags", "bag"):
             from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-        self.store = get_typestore(Stores.ROS1_NOETIC)
+        self.store = get_typestore(Stores.ROS2_HUMBLE if ros == 2 else Stores.ROS1_NOETIC)
+        self._serialise = self.store.serialize_cdr if ros == 2 else self.store.serialize_ros1
+        self.deserialise = self.store.deserialize_cdr if ros == 2 else self.store.deserialize_ros1
+        self._sequence = () if ros == 2 else (0,)  # of a header, which ROS 2 does not have
         if _TF not in self.store.types:  # which is no type of common_msgs
             self.store.register(
                 get_types_from_msg("geometry_msgs/TransformStamped[] transforms", _TF)
@@ -94,14 +108,14 @@ class Messages:
         return self.store.types[name]
 
     def _bytes(self, message: Any, kind: str) -> bytes:
-        return bytes(self.store.serialize_ros1(message, kind))
+        return bytes(self._serialise(message, kind))
 
     def _stamp(self, time: float) -> Any:
         seconds, rest = divmod(round(time * 1e9), 10**9)
         return self._type("builtin_interfaces/msg/Time")(seconds, rest)
 
     def _header(self, stamp: Any, frame: str) -> Any:
-        return self._type("std_msgs/msg/Header")(0, stamp, frame)
+        return self._type("std_msgs/msg/Header")(*self._sequence, stamp, frame)
 
     def _vector(self, numbers: np.ndarray, kind: str = "Vector3") -> Any:
         return self._type(f"geometry_msgs/msg/{kind}")(*numbers)

@@ -62,8 +62,9 @@ class Log(Trajectory):
         Parameters
         ----------
         path : str or path
-            ``.csv``, ``.mat`` or ``.bag`` file of quadcore, or a ULog, a Crazyflie micro-SD log, a
-            blackbox log, a CSV file or a bag with other columns; also compressed by gzip.
+            ``.csv``, ``.mat`` or ``.bag`` file of quadcore, or the folder of a ROS 2 bag. Recordings
+            are a ULog, a Crazyflie micro-SD log, a blackbox log, a CSV file or a bag with other
+            columns; also compressed by gzip.
         mapping : str or path, optional
             Description of the columns of a recording: a YAML file or a shipped name. Default: the
             shipped mapping that fits.
@@ -190,12 +191,12 @@ class Log(Trajectory):
         mat.write_log(_check_path(path), *self._parts(), layout)
 
     def to_file(self, path: PathLike) -> None:
-        """Write a ``.csv``, ``.mat`` or ``.bag`` file.
+        """Write a ``.csv``, ``.mat`` or ``.bag`` file, or a ROS 2 bag ``.ros2``.
 
         Parameters
         ----------
         path : str or path
-            File; its suffix selects the format.
+            File, or for ``.ros2`` a new folder; its suffix selects the format.
 
         Raises
         ------

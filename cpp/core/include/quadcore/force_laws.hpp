@@ -26,6 +26,7 @@ struct Quiet {
 struct ForceLaws {
   std::vector<RotorForces> rotor_forces;    ///< thrust, drag, reaction torques
   std::vector<FrameDrag> frame_drags;       ///< parasitic drag of the airframe
+  std::vector<AirframeLaws> airframes;      ///< other loads of the air on the airframe
   std::vector<MotorTorques> motor_torques;  ///< torques on the joints
   std::vector<Quiet> quiet;                 ///< bounds for plugins with an update()
   /// Whether all plugins with an update() are in `quiet` and the laws are complete.

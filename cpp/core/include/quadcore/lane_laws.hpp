@@ -35,6 +35,18 @@ struct FrameDrag {
   double coefficient;  ///< N s^2/m^2
 };
 
+/// Rows of the airframe's other laws, see laws/airframe.hpp: linear drag along z [N s/m], quadratic
+/// drag along each axis [N s^2/m^2], hub moment [N s], damping of each rate [N m s], and constant
+/// torque [N m].
+struct AirframeRow {
+  enum : std::size_t { axial, quadratic, hub_moment = 4, damping, torque = 8, count = 11 };
+};
+
+/// The airframe's other laws.
+struct AirframeLaws {
+  const double* coefficients;  ///< AirframeRow::count numbers
+};
+
 /// Rows of the motor controllers' memory; all 0 for rotors of other plugins and before the first
 /// command. `active` is the remaining fraction of the torque, `target` the wanted joint rate
 /// [rad/s], `error_sum` the integral of the rate error [rad], and `last_error` the last rate error
