@@ -24,8 +24,8 @@ class Geometric:
         for topic, plugin in (("imu", "imu"), ("fix", "gps")):
             if topic not in simulation.topics:
                 raise qc.InputError(
-                    f"the estimate needs topic '{topic}'; add lib{plugin}_plugin.so, or use "
-                    "--scenario sensors.yaml"
+                    f"the estimate requires topic '{topic}'. Add lib{plugin}_plugin.so, or use "
+                    "--scenario sensors.yaml."
                 )
         self._controller = qc.controllers.parse("geometric", simulation.model.name)
         self._controller.rate = self.rate

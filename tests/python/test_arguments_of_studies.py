@@ -18,14 +18,14 @@ def hover():
     [
         ({"vary": {"row": [1, 2]}}, "two columns 'row'"),
         ({"measures": ["failure"]}, "two columns 'failure'"),
-        ({"measures": 3}, "measures is 3; give a name, or several"),
-        ({"vary": {"a": None}}, "give a mapping of names to lists of values"),
+        ({"measures": 3}, "measures is 3. Give a name, or several"),
+        ({"vary": {"a": None}}, "Give a mapping of names to lists of values"),
         ({"controllers": "pd"}, "function replaces flights"),
         ({"vary": {"a": "uniform:0:1"}, "samples": 10**12}, "Give at most 1000000."),
         ({"vary": {"a": "uniform:0:1"}, "samples": 1, "design": "saltelli"}, "at least 2"),
-        ({"executor": 3}, "executor is 3; give what has submit()"),
-        ({"points": 3}, "points is 3; give a name or a path"),
-        ({"seed": "a"}, "seed is 'a'; give a whole number"),
+        ({"executor": 3}, "executor is 3. Give what has submit()"),
+        ({"points": 3}, "points is 3. Give a name or a path"),
+        ({"seed": "a"}, "seed is 'a'. Give a whole number"),
     ],
 )  # fmt: skip
 def test_wrong_arguments_of_a_swept_function_are_refused_in_one_line(given, told):
@@ -43,12 +43,12 @@ def test_an_axis_named_seed_may_hold_any_number():
     ("given", "told"),
     [
         ({"free": ["xacro.motor"]}, "free xacro.motor: 'pid' is not a number. Only numbers can"),
-        ({"free": None}, "free is None; give a name, or several"),
+        ({"free": None}, "free is None. Give a name, or several"),
         ({"horizon": 1e300}, "the log is shorter than a horizon"),
-        ({"shift": 1e300}, "shift is 1e+300; give seconds, from 0 to 10"),
+        ({"shift": 1e300}, "shift is 1e+300. Give seconds, from 0 to 10"),
         ({"channels": []}, "channels is []. Give some of position"),
-        ({"bounds": {"frame.mass": 3}}, "give a mapping of names to (lowest, highest)"),
-        ({"log": 3}, "log is 3; give a log, or its file"),
+        ({"bounds": {"frame.mass": 3}}, "Give a mapping of names to (lowest, highest)"),
+        ({"log": 3}, "log is 3. Give a log, or its file"),
     ],
 )  # fmt: skip
 def test_wrong_arguments_of_a_fit_are_refused_in_one_line(hover, given, told):

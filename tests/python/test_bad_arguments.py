@@ -47,9 +47,9 @@ def test_parameters_that_are_wrong(parameters, says):
         ("dt", 0.99e-9, "dt is 9.9e-10 s. Use a step of at least 1e-09 s."),
         ("dt", math.nan, "dt is nan s. Use a step of at least 1e-09 s."),
         ("dt", math.inf, "dt is inf s. Use a step of at least 1e-09 s."),
-        ("spawn", (0, 0), "spawn is (0, 0); give x, y, z[, roll, pitch, yaw] in m and rad"),
-        ("spawn", (0, 0, 0, 0), "give x, y, z[, roll, pitch, yaw] in m and rad"),
-        ("spawn", (0, 0, "up"), "give x, y, z[, roll, pitch, yaw] in m and rad"),
+        ("spawn", (0, 0), "spawn is (0, 0). Give x, y, z[, roll, pitch, yaw] in m and rad"),
+        ("spawn", (0, 0, 0, 0), "Give x, y, z[, roll, pitch, yaw] in m and rad"),
+        ("spawn", (0, 0, "up"), "Give x, y, z[, roll, pitch, yaw] in m and rad"),
         ("spawn", (0, 0, math.nan), "Write x,y,z[,roll,pitch,yaw]"),
         ("spawn", (0, 0, 1e12), "spawn: the distance from the origin is 1e+12 m, but a flight"),
         ("engine", "gazebo", "engine 'gazebo' does not exist. Did you mean 'gazebo11'?"),
@@ -58,11 +58,11 @@ def test_parameters_that_are_wrong(parameters, says):
             "lagrange",
             "Engine 'lagrange' is available in quadcore.FlightPlan",
         ),
-        ("seed", -1, "seed is -1; give a whole number from 0"),
-        ("seed", 1.5, "seed is 1.5; give a whole number from 0"),
-        ("seed", 2**64, "give a whole number from 0 to 2^64 - 1"),
+        ("seed", -1, "seed is -1. Give a whole number from 0"),
+        ("seed", 1.5, "seed is 1.5. Give a whole number from 0"),
+        ("seed", 2**64, "Give a whole number from 0 to 2^64 - 1"),
         ("xacro_args", {"a": 1}, "toy.urdf: takes no xacro arguments"),
-        ("world", "nowhere.world", "nowhere.world: no such file"),
+        ("world", "nowhere.world", "nowhere.world: neither a file"),
     ],
 )
 def test_arguments_that_are_wrong(option, value, says):
@@ -99,11 +99,11 @@ def state_of(simulation, **changed):
         (lambda s: s.command([[1]]), "command is not a 1-dimensional array of numbers"),
         (lambda s: s.command("x"), "command is not a 1-dimensional array of numbers"),
         (lambda s: s.step(-1), "the step count is -1. Give a whole number >= 0."),
-        (lambda s: s.run(-1), "duration is -1; give seconds, from 0 to 1e+09"),
-        (lambda s: s.run(math.nan), "duration is nan; give seconds, from 0 to 1e+09"),
-        (lambda s: s.run(1, log_every=0), "log_every is 0; give a whole number >= 1"),
+        (lambda s: s.run(-1), "duration is -1. Give seconds, from 0 to 1e+09"),
+        (lambda s: s.run(math.nan), "duration is nan. Give seconds, from 0 to 1e+09"),
+        (lambda s: s.run(1, log_every=0), "log_every is 0. Give a whole number >= 1"),
         (lambda s: s.run(1, commands=[[0, math.nan]]), "w1 is nan. Write a finite number."),
-        (lambda s: s.run(1, commands=[[0, 1, 2]]), "takes (rows, 2): t,w1"),
+        (lambda s: s.run(1, commands=[[0, 1, 2]]), "Give (rows, 2): t,w1"),
         (lambda s: s.run(1, commands=np.zeros((0, 2))), "commands: holds no commands"),
         (lambda s: s.run(1, commands=[[0, 1], [0, 2]]), "is not later than"),
         (lambda s: s.set_state(state_of(s, position=[0, 0])), "state.position has 2 numbers"),
@@ -245,9 +245,9 @@ def test_lists_that_come_one_by_one_are_read_once():
         qc.Simulation("quadrotor", ignore=(name for name in ["nonsense"]))
     log = quadrotor("eigen").run(0.01, topics=(name for name in ["odom"]))
     assert list(log.topics) == ["odom"]
-    with pytest.raises(qc.InputError, match=r"vary is .*give a mapping of names to lists"):
+    with pytest.raises(qc.InputError, match=r"vary is .*Give a mapping of names to lists"):
         qc.compare("quadrotor", {"motorpid_plugin.kp": (kp for kp in [1e-3])})
-    with pytest.raises(qc.InputError, match=r"models is \[\]; give a name, or several"):
+    with pytest.raises(qc.InputError, match=r"models is \[\]. Give a name, or several"):
         qc.compare([])
 
 
@@ -273,9 +273,9 @@ def test_a_long_value_is_shortened_in_what_is_said_of_it():
         qc.Simulation("quadrotor", parameters=np.arange(10000.0).reshape(-1, 10))
     told = str(refusal.value)
     assert told.startswith("parameters is array([[") and len(told) < 250 and "\n" not in told
-    assert told.endswith("give a mapping of names to values")
+    assert told.endswith("Give a mapping of names to values")
 
 
-def test_an_option_that_there_is_not_is_told_with_the_nearest():
-    with pytest.raises(qc.InputError, match="no option 'enigne' \\(did you mean 'engine'\\)"):
+def test_an_option_that_there_is_not_is_refused_with_the_nearest():
+    with pytest.raises(qc.InputError, match=r"'enigne' does not exist\. Did you mean 'engine'"):
         qc.compare("quadrotor", enigne="ode")

@@ -151,8 +151,11 @@ def test_what_cannot_be_read_is_one_line(tmp_path):
     (tmp_path / "text.bag").write_text("t,w1\n")
     (tmp_path / "empty.bag").write_bytes(b"")
     for name, says in (
-        ("other.bag", "topics of commands: none; a bag of commands has one that ends in vel_cmd"),
-        ("short.bag", "/vel_cmd: a message of 2 numbers; this model with 4 rotors takes w1, w2"),
+        ("other.bag", "topics of commands: none. Record one topic that ends in vel_cmd"),
+        (
+            "short.bag",
+            "/vel_cmd: a message of 2 numbers, but the model has 4 rotors. Record w",
+        ),
         ("reset.bag", "/vel_cmd: its time goes back, as after a reset"),
         ("text.bag", "is no bag that can be read"),
         ("empty.bag", "is no bag that can be read"),

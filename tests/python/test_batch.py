@@ -367,12 +367,12 @@ def test_the_log_of_a_vehicle_that_fails_ends_before_it():
 @pytest.mark.parametrize(
     ("given", "what"),
     [
-        ({"log": [2]}, "log names vehicle 2; there are 0 to 1"),
-        ({"log": [0], "log_every": 0}, "log_every is 0; give a whole number >= 1"),
+        ({"log": [2]}, "log names vehicle 2. Use 0 to 1."),
+        ({"log": [0], "log_every": 0}, "log_every is 0. Give a whole number >= 1"),
         ({"log": [0], "log_every": 20}, "log_every is 20 but the flight has 10 steps"),
-        ({"log": [True, False]}, "log is True; give a whole number"),
-        ({"log": 1}, "log is 1; give a list of numbers of vehicles"),
-        ({"log_every": "a"}, "log_every is 'a'; give a whole number"),
+        ({"log": [True, False]}, "log is True. Give a whole number"),
+        ({"log": 1}, "log is 1. Give a list of vehicle numbers"),
+        ({"log_every": "a"}, "log_every is 'a'. Give a whole number"),
         ({"commands": [1, 2]}, "commands"),
     ],
 )

@@ -272,7 +272,7 @@ def test_a_constant_wind_blows_in_studies():
         for wind in (None, (3, 0, 0))
     )
     assert windy > 2 * still
-    with pytest.raises(qc.InputError, match=r"wind is \(3, 0\); give three numbers"):
+    with pytest.raises(qc.InputError, match=r"wind is \(3, 0\). Give three numbers"):
         qc.evaluate("pd", "hover", wind=(3, 0))
 
 

@@ -230,7 +230,7 @@ def test_a_variant_that_fails_is_a_row_and_the_others_finish(capsys):
     assert rows()[4]["final_x"] == ""
     assert "6 flights: 3 flown, 3 failed" in out
     assert all(reason in out for reason in reasons)
-    assert err.startswith("error: 3 of 6 flights failed; the first, no. 3 (kp -1, sim_slow 1): ")
+    assert err.startswith("error: 3 of 6 flights failed. The first one: no. 3 (kp -1, sim_slow ")
     assert sorted(path.name for path in Path("out/logs").iterdir()) == ["1.csv", "2.csv", "6.csv"]
     content = json.loads(Path("out/comparison.json").read_text())
     assert content["rows"][2]["failure"] == reasons[2]
@@ -266,7 +266,10 @@ def test_any_flight_can_be_what_the_others_are_compared_with(processes):
 def test_a_flight_to_compare_with_that_is_none_or_fails_is_said(capsys):
     vary = ["--vary", "motor.kp=1e-4,-1"]
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "3"]) == 2
-    assert capsys.readouterr().err == "error: --against 3: there are only 2 flights\n"
+    assert (
+        capsys.readouterr().err
+        == "error: --against 3: there are only 2 flights. Use a smaller number.\n"
+    )
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "2"]) == 2
     assert "error: baseline no. 2 is invalid: " in capsys.readouterr().err
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "1", "--out", "out"]) == 3

@@ -215,12 +215,12 @@ def test_references_and_laws_can_be_pickled():
     [
         ({"reference": "spiral"}, "a reference needs a controller"),
         ({"controller": "geometric"}, "has no reference to follow"),
-        ({"controller": "geometrik", "reference": "spiral"}, "did you mean 'geometric'"),
-        ({"controller": "pd", "reference": "spirale"}, "did you mean 'spiral'"),
+        ({"controller": "geometrik", "reference": "spiral"}, "Did you mean 'geometric'"),
+        ({"controller": "pd", "reference": "spirale"}, "Did you mean 'spiral'"),
         ({"controller": "pd", "reference": 5}, "reference is 5. Give one of quadcore.references"),
         (
             {"controller": controllers.pd(delay=-1), "reference": "hover"},
-            "its delay is -1; give seconds",
+            "its delay is -1. Give seconds",
         ),
         ({"controller": controllers.pd(kp=1), "reference": "hover"}, "has no parameter 'kp'"),
         ({"controller": controllers.pd(kp_xy=-1), "reference": "hover"}, "'kp_xy' is -1. Give"),
@@ -242,5 +242,5 @@ def test_parameters_are_documented_where_they_are_given():
     assert "kp_xy : float, default 2.4" in controllers.pd.__doc__
     assert "kd_xy : float, default 0.125" in controllers.pid_thesis.__doc__
     assert "rate : float, default 1.5" in references.circle.__doc__
-    with pytest.raises(AttributeError, match="there is no controller 'pdd'"):
+    with pytest.raises(AttributeError, match="controller 'pdd' does not exist"):
         controllers.pdd  # noqa: B018

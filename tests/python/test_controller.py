@@ -168,11 +168,11 @@ class WithoutRate:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ({"controller": 5}, "controller is 5; give a function, or an object, that is called as"),
-        ({"controller": WithoutRate()}, "its rate is 'often'; give calls per second, >= 1e-06"),
-        ({"controller": Law(0)}, "its rate is 0; give"),
-        ({"controller": Law(np.inf)}, "its rate is inf; give"),
-        ({"controller": Law(), "commands": MANOEUVRE}, "commands or a controller; give one"),
+        ({"controller": 5}, "controller is 5. Give a function or an object that is called as"),
+        ({"controller": WithoutRate()}, "its rate is 'often'. Give calls per second, >= 1e-06"),
+        ({"controller": Law(0)}, "its rate is 0. Give"),
+        ({"controller": Law(np.inf)}, "its rate is inf. Give"),
+        ({"controller": Law(), "commands": MANOEUVRE}, "commands or a controller. Give one"),
     ],
 )
 def test_what_is_no_controller_is_refused_before_the_flight(arguments, says):

@@ -165,7 +165,7 @@ def test_a_doctype_in_an_included_file_is_refused(write, robot):
 def test_an_unknown_xacro_argument_is_refused_with_the_known_ones(robot):
     file = robot('<xacro:arg name="sim_slow" default="1"/>', '<xacro:arg name="kp" default="1"/>')
     message = refusal(file, {"sim_slwo": "2"})
-    assert "has no xacro argument 'sim_slwo' (did you mean 'sim_slow'). Use one of " in message
+    assert "has no xacro argument 'sim_slwo'. Did you mean 'sim_slow'? Use one of " in message
     assert "has no xacro argument 'kp'. Leave it out." in refusal(robot("<a/>"), {"kp": "2"})
 
 
@@ -194,7 +194,7 @@ def test_files_that_are_no_text_are_refused(tmp_path):
 
 def test_a_missing_model_names_the_shipped_ones(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert refusal("nope.urdf").startswith("nope.urdf: no such file")
+    assert refusal("nope.urdf").startswith("nope.urdf: neither a file")
     assert "quadrotor" in refusal("nope")
     assert "is a folder" in refusal(str(tmp_path))
 

@@ -269,7 +269,7 @@ def test_the_command_writes_the_model_and_tells_what_is_known(flown, in_empty_fo
             [*free, "--bound", "frame.mass=2:3"],
             "bound frame.mass: the start value 1 is not within 2 and 3",
         ),
-        ([*free, "--bound", "frame.mass=2"], "'2' is not a range; write LOW:HIGH"),
+        ([*free, "--bound", "frame.mass=2"], "'2' is not a range. Write LOW:HIGH"),
         ([*free, "--bound", "frame.ixx=0:3"], "bound frame.ixx: the parameter is not free"),
         ([*free, "--horizon", "99"], "the log is shorter than a horizon"),
         (

@@ -102,7 +102,7 @@ def test_the_command_writes_the_expanded_document(flown, in_empty_folder):
             "xacro.drag",
             "free xacro.drag: 'all' is not a number. Only numbers can be fitted.",
         ),
-        ("quadrotor", "xacro.fram_mass", "has no such parameter (did you mean 'xacro.frame_mass')"),
+        ("quadrotor", "xacro.fram_mass", "has no such parameter. Did you mean 'xacro.frame_mass'?"),
         ("plain.urdf", MASS, f"free {MASS}: model quadrotor has no such parameter"),
     ):
         assert told in refused("fit", model, *words[2:], "--free", name)

@@ -88,7 +88,7 @@ def test_the_fingerprint_is_of_what_flies_not_of_where_it_lies(toy, tmp_path):
 
 def test_what_is_wrong_with_a_plan_is_said_before_it_flies(toy):
     for options, says in (
-        ({"model": "nope.urdf"}, "nope.urdf: no such file"),
+        ({"model": "nope.urdf"}, "nope.urdf: neither a file"),
         (
             {"ignore": ["blob"]},
             "ignore blob: neither the model nor the world has anything of that name",

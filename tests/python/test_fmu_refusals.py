@@ -54,7 +54,7 @@ def test_options_that_an_fmu_does_not_carry_are_refused_by_name(options, tmp_pat
     ) as error:
         qc.export_fmu(tmp_path / "x.fmu", "quadrotor", **options)
     assert "\n" not in str(error.value)
-    with pytest.raises(qc.InputError, match="model is None; give a name or a path"):
+    with pytest.raises(qc.InputError, match=r"model is None\. Give a name or a path"):
         qc.export_fmu(tmp_path / "x.fmu", None)
     assert list(tmp_path.iterdir()) == []
 

@@ -190,7 +190,7 @@ def test_a_flight_that_fails_tells_why_and_gives_the_observation_before():
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        ({"observation": ["eror"]}, r"observation 'eror' does not exist \(did you mean 'error'\)"),
+        ({"observation": ["eror"]}, r"observation 'eror' does not exist\. Did you mean 'error'\?"),
         ({"observation": "error"}, "observation is 'error'. Name some of error, body_error"),
         ({"reward": {"closeness": 1}}, "reward 'closeness' does not exist"),
         ({"rate": 300}, "rate is 300: an action lasts 3.33333 steps of 0.001 s"),
@@ -224,7 +224,7 @@ def test_wrong_actions_and_options_are_told(make):
 
 def test_without_gymnasium_it_is_told_what_to_install():
     hidden = "import sys; sys.modules['gymnasium'] = None; import quadcore.gym"
-    says = "quadcore.gym needs the package gymnasium, 1.1 or newer; install it: pip install"
+    says = "quadcore.gym requires the package gymnasium, 1.1 or newer. Install it: pip install"
     assert says in script(hidden).stderr.splitlines()[-1]
 
 

@@ -67,15 +67,15 @@ def test_help_of_the_program_says_what_it_is_and_which_engine_is_the_default(cap
 
 
 def test_only_close_options_are_suggested(in_empty_folder):
-    assert "--realtime; see" in refused("run", "quadrotor", "--realtime")
-    assert "(did you mean '--json')" in refused("run", "quadrotor", "--jsn")
+    assert "--realtime. See" in refused("run", "quadrotor", "--realtime")
+    assert "Did you mean '--json'?" in refused("run", "quadrotor", "--jsn")
 
 
 @pytest.mark.parametrize(
     "words, told",
     [
-        (["tune", "pd", "-o", "gains.yaml"], "tuning writes no log; leave --log-every out"),
-        (["export-fmu", "quadrotor", "-o", "x.fmu"], "an FMU writes no log; leave --log-every out"),
+        (["tune", "pd", "-o", "gains.yaml"], "tuning writes no log. Leave --log-every out"),
+        (["export-fmu", "quadrotor", "-o", "x.fmu"], "an FMU writes no log. Leave --log-every out"),
     ],
 )
 def test_what_writes_no_log_thins_none(words, told, in_empty_folder):

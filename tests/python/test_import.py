@@ -100,8 +100,8 @@ def test_a_library_that_is_missing_is_named_with_its_package(tmp_path):
         (package / "_core.py").write_text(f"raise ImportError('{file}: {loading}')")
         said = script("import quadcore", cwd=tmp_path).stderr
         assert said.splitlines()[-1] == (
-            f"ImportError: quadcore was built with {file}, which is not there; install it (Debian, "
-            f"Ubuntu: apt-get install {name}), or build quadcore anew"
+            f"ImportError: quadcore was built with {file}, which is missing. Install it (Debian, "
+            f"Ubuntu: apt-get install {name}), or rebuild quadcore."
         )
     (package / "_core.py").write_text("raise ImportError('another')")
     assert script("import quadcore", cwd=tmp_path).stderr.endswith("ImportError: another\n")

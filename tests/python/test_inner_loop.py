@@ -139,12 +139,15 @@ def test_a_controller_is_copied_with_its_inner_loop():
 @pytest.mark.parametrize(
     ("asked", "says"),
     [
-        (qc.AttitudeThrust([0, 0, 0, 2], 10), "orientation has length 2; give a unit quaternion"),
-        (qc.AttitudeThrust([0, 0, 1], 10), "give 4 finite numbers"),
+        (qc.AttitudeThrust([0, 0, 0, 2], 10), "orientation has length 2. Give a unit quaternion"),
+        (qc.AttitudeThrust([0, 0, 1], 10), "Give 4 finite numbers"),
         (qc.AttitudeThrust("level", 10), "AttitudeThrust: its orientation"),
-        (qc.AttitudeThrust([0, 0, 0, 1], np.nan), "AttitudeThrust: its thrust is nan; give N"),
+        (
+            qc.AttitudeThrust([0, 0, 0, 1], np.nan),
+            "AttitudeThrust: its thrust is nan. Give a force",
+        ),
         (qc.RatesThrust([0, 0, np.inf], 10), "RatesThrust: its angular_velocity is"),
-        (qc.RatesThrust([0, 0, 0], "much"), "RatesThrust: its thrust is 'much'; give N"),
+        (qc.RatesThrust([0, 0, 0], "much"), "RatesThrust: its thrust is 'much'. Give a force in N"),
     ],
 )
 def test_what_is_no_attitude_or_rate_is_refused(asked, says):
@@ -160,7 +163,7 @@ def test_parameters_of_the_inner_loop_are_checked_and_documented():
     for loop, says in (
         (qc.InnerLoop(kr_pr=1), r"inner loop has no parameter 'kr_pr'\. Did you mean 'kr_rp'\?"),
         (qc.InnerLoop(spins=[1, 1]), "the spins are not 4 signs"),
-        ("stiff", "its inner_loop is 'stiff'; give a quadcore.InnerLoop"),
+        ("stiff", "its inner_loop is 'stiff'. Give a quadcore.InnerLoop"),
     ):
         law.inner_loop = loop
         with pytest.raises(qc.InputError, match=says):

@@ -72,15 +72,15 @@ def test_a_bag_of_the_thesis_lacks_the_rotors_and_says_so(tmp_path):
         bag.write(commands, 1, messages.make_array(speeds, messages.make_layout(["w"], 4)))
     found = refused("validate", "--plant", str(tmp_path / "thesis.bag"))
     assert "topics that end in ground_truth/odometry: none" in found
-    assert "record both, or give a .csv or .mat file with the columns of a log" in found
+    assert "or give a .csv or .mat file with the columns of a log." in found
 
 
 def test_what_cannot_be_judged_is_one_line(recording):
     bare = str(recording / "bare.csv")
-    assert "has no topic vel_cmd; give the --commands" in refused("validate", "--plant", bare)
+    assert "has no topic vel_cmd. Give the --commands" in refused("validate", "--plant", bare)
     late = ("--commands", str(recording / "late.csv"))
     assert "begins at t = 3, the commands at 3.1" in refused("validate", "--plant", bare, *late)
     found = refused("validate", "hexarotor", "--plant", str(recording / "flight.csv"))
     assert "has 4 rotors, the model 6" in found
     found = refused("validate", "--plant", bare, "--sim-slow", "8")
-    assert "--plant is one flight; give its --sim-slow with --set" in found
+    assert "--plant is one flight. Give its --sim-slow with --set" in found

@@ -178,7 +178,7 @@ def test_a_column_goes_by_its_name_in_the_csv_file(log, tmp_path):
     for name, column in zip(header, written.T):
         assert np.array_equal(whole[name], column), name
     assert list(whole.to_dict()) == header
-    with pytest.raises(InputError, match="did you mean 'j1'"):
+    with pytest.raises(InputError, match="Did you mean 'j1'"):
         whole["j11"]
 
 

@@ -149,7 +149,7 @@ def test_effects_that_no_tag_scales_are_named_on_the_terminal_and_on_the_page(
     """As of a vehicle with the motors of a third party, whose tags scale the thrust alone."""
     model = tmp_path / "own.urdf"
     model.write_text(with_plugins(vehicle(mass=1), plugin("own_motor", {}), plugin("odometry", {})))
-    told = f"margins: no tag of '{model}' scales its drag and its lag; box is not searched"
+    told = f"margins: no tag of '{model}' scales its drag and its lag. box is not searched."
     out = tmp_path / "out"
     command = "evaluate --controller geometric --reference hover --duration 0.1 --margins"
     assert main([*command.split(), "--model", str(model), "--out", str(out)]) == 0

@@ -158,7 +158,7 @@ def test_a_name_that_nothing_goes_by_is_refused_and_told_what_there_is(flown, na
 
 @pytest.mark.parametrize("names", ["pusher", [1], [None]])
 def test_names_to_ignore_are_a_list_of_texts(flown, names):
-    assert "give a list of names" in refusal(flown, ignore=names)
+    assert "Give a list of names" in refusal(flown, ignore=names)
 
 
 def test_an_inertia_that_breaks_the_triangle_inequality_warns_and_flies(toy):

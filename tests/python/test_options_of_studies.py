@@ -68,7 +68,7 @@ def test_a_file_holds_the_options_of_every_study(study, capsys):
     assert "error: shared.yaml:4: " in capsys.readouterr().err
     Path("shared.yaml").write_text("duration: 0.2\ntime-limit: 1e12\n")
     assert main([study, *WORDS[study], "--options", "shared.yaml"]) == 2
-    assert "time_limit is 1000000000000.0; give seconds" in capsys.readouterr().err
+    assert "time_limit is 1000000000000.0. Give seconds" in capsys.readouterr().err
 
 
 def test_a_comparison_has_seeds_scenarios_and_values_of_the_controller():

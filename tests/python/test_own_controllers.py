@@ -79,7 +79,7 @@ def test_a_class_in_the_place_of_its_instance_is_told_what_to_write():
         def __call__(self, t, state, reference):
             return [471, -471, 471, -471]
 
-    says = r"controller is the class My; give an instance: My\(\)"
+    says = r"controller is the class My. Give an instance: My\(\)"
     with pytest.raises(qc.InputError, match=says):
         evaluate([My], ["hover"])
     with pytest.raises(qc.InputError, match=says):
@@ -94,7 +94,7 @@ def test_faults_of_a_controller_are_rows_and_the_other_flights_finish(capsys):
     assert main([*command, "--time-limit", "2", "--out", "out", "--no-plots", "--quiet"]) == 3
     error = capsys.readouterr().err.splitlines()
     assert len(error) == 1
-    assert "24 of 28 flights failed; the first, nomodule:X on hover in eigen, seed 0" in error[0]
+    assert "24 of 28 flights failed. The first one: nomodule:X on hover in eigen" in error[0]
     told = {row["controller"]: row["failure"] for row in rows()}
     for name, says in {
         "pd": "",

@@ -29,8 +29,8 @@ def test_vectors_are_rows_and_a_yaw_among_them_is_flown(kind, width, tmp_path):
 @pytest.mark.parametrize(
     ("held", "says"),
     [
-        ({"t": [0, 1], "x": [0, 1], "y": [0, 1]}, r"holds t, x, y; a path is t, x, y, z\[, yaw\]"),
-        ({}, r"holds no variables; a path is t, x, y, z\[, yaw\]"),
+        ({"t": [0, 1], "x": [0, 1], "y": [0, 1]}, r"contains t, x, y\. Save t, x, y, z\[, yaw\]"),
+        ({}, r"contains no variables\. Save t, x, y, z\[, yaw\]"),
         ({**VECTORS, "yaw": [0, 1]}, "path.mat: yaw has 2 values, t has 3"),
         ({**VECTORS, "z": "high"}, "path.mat: z is no vector of real numbers"),
     ],

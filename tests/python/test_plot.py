@@ -64,7 +64,7 @@ def test_what_is_no_log_and_too_few_names_are_refused(capsys):
     assert main(["plot", "none.csv", "--out", "a"]) == 2
     assert "none.csv" in capsys.readouterr().err
     assert main(["plot", "fall.csv", "climb.csv", "--names", "one", "--out", "a"]) == 2
-    assert "--names: names 1 of 2 flights" in capsys.readouterr().err
+    assert "--names: 1 name(s) for 2 flight(s)" in capsys.readouterr().err
     assert not Path("a").exists()
 
 

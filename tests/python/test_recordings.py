@@ -222,7 +222,7 @@ def test_a_mapping_converts_units_and_frames(tmp_path):
         (("[x, y, z]", "[x, y, u]"), "column 'u' does not exist"),
         (("column: ms", "column: us"), "column 'us' of the time does not exist"),
         (("format: csv", "format: ulog"), "maps ulog files"),
-        (("position", "positoin"), "did you mean 'position'"),
+        (("position", "positoin"), "Did you mean 'position'"),
         (("world: NED", "world: ECEF"), "world is 'ECEF'. Use one of ENU, NED."),
         (("{columns: [x", "columns: [x"), ":4: this is not YAML"),
     ],

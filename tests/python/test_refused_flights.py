@@ -37,19 +37,19 @@ def flies(in_empty_folder):
     [
         (
             f"compare quadrotor --vary {SLOW}=1,2 --quiet",
-            "2 of 2 flights were refused; the first, no. 1 (sim_slow 1): ",
+            "2 of 2 flights were refused. The first one: no. 1 (sim_slow 1): ",
         ),
         (
             f"compare quadrotor --vary engine=eigen,ode --controller flies:nope {SPIRAL}",
-            "2 of 2 flights were refused; the first, no. 1 (engine eigen): controller 'flies:nope'",
+            "2 of 2 flights were refused. The first one: no. 1 (engine eigen): controller ",
         ),
         (
             f"evaluate --controller nowhere:law {SPIRAL} --seeds 2",
-            "2 of 2 flights were refused; the first, nowhere:law on spiral in eigen, seed 0: ",
+            "2 of 2 flights were refused. The first one: nowhere:law on spiral in eigen, seed 0: ",
         ),
         (
             f"sweep --controller nowhere:law {SPIRAL} --seeds 2",
-            "2 of 2 flights were refused; the first, row 0: controller 'nowhere:law': ",
+            "2 of 2 flights were refused. The first one: row 0: controller 'nowhere:law': ",
         ),
     ],
 )
@@ -71,7 +71,7 @@ def test_flights_that_are_all_refused_are_bad_input(capsys, command, told):
 )
 def test_flights_of_which_some_flew_are_flights_that_failed(capsys, command):
     assert main(command.split()) == 3
-    assert " flights failed; the first, " in capsys.readouterr().err
+    assert " flights failed. The first one: " in capsys.readouterr().err
 
 
 LATE = "the flight failed at t = 0.060000 s: step(): this simulation is running"
@@ -83,7 +83,7 @@ LATE = "the flight failed at t = 0.060000 s: step(): this simulation is running"
         (f"run quadrotor --controller flies:Late {SPIRAL}", LATE),
         (
             f"compare quadrotor --vary engine=eigen,ode --controller flies:Late {SPIRAL}",
-            f"2 of 2 flights failed; the first, no. 1 (engine eigen): {LATE}",
+            f"2 of 2 flights failed. The first one: no. 1 (engine eigen): {LATE}",
         ),
         (
             f"compare quadrotor --against 2 --vary engine=eigen,ode --controller flies:Late "
@@ -92,11 +92,11 @@ LATE = "the flight failed at t = 0.060000 s: step(): this simulation is running"
         ),
         (
             f"evaluate --controller flies:Late {SPIRAL} --seeds 2",
-            "2 of 2 flights failed; the first, flies:Late on spiral in eigen, seed 0: " + LATE,
+            "2 of 2 flights failed. The first one: flies:Late on spiral in eigen, seed 0: " + LATE,
         ),
         (
             f"sweep --controller flies:Late {SPIRAL} --seeds 2",
-            f"2 of 2 flights failed; the first, row 0: {LATE}",
+            f"2 of 2 flights failed. The first one: row 0: {LATE}",
         ),
     ],
 )

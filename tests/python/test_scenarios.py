@@ -141,9 +141,9 @@ def test_events_are_told_by_time():
         ("plugins: {payload: {mass: 1}}\n"
          "events:\n  - {at: 1, release: payload}\n  - {at: 2, release: payload}", 4, "twice"),
         ("events:\n  - {at: 1, release: parcel}", 2, "mass"),
-        ("events:\n  - {at: 1, cut: 1}\n  - {at: 1, cut: 5}", 3, "no rotor 5"),
-        ("events:\n  - {at: 1, cut: 1.5}", 2, "no rotor 1.5"),
-        ("events:\n  - {at: 1, cut: 0}", 2, "no rotor 0"),
+        ("events:\n  - {at: 1, cut: 1}\n  - {at: 1, cut: 5}", 3, "rotor 5 does not exist"),
+        ("events:\n  - {at: 1, cut: 1.5}", 2, "rotor 1.5 does not exist"),
+        ("events:\n  - {at: 1, cut: 0}", 2, "rotor 0 does not exist"),
         ("events:\n  - {at: 1, weaken: 1, to: 1.5}", 2, "remaining fraction"),
         ("events:\n  - {at: 1, gust: [1, 0, 0]}", 2, "lacks 'lasts'"),
         ("events:\n  - {at: 1, gust: [1, 0], lasts: 1}", 2, "3 numbers"),

@@ -109,7 +109,7 @@ def test_a_snapshot_brings_its_seed_back():
 
 @pytest.mark.parametrize("seed", [-1, 1.5, "1", 2**64])
 def test_a_seed_that_is_none_is_refused_by_reset(seed):
-    with pytest.raises(qc.InputError, match=r"seed is .*; give a whole number from 0 to"):
+    with pytest.raises(qc.InputError, match=r"seed is .*\. Give a whole number from 0 to"):
         quadrotor().reset(seed=seed)
 
 

@@ -91,7 +91,7 @@ def test_live_views_follow_the_flight_and_cannot_be_written():
         assert np.shares_memory(view, getattr(simulation.state, name))
         with pytest.raises(ValueError, match="read-only"):
             view[0] = 1
-        with pytest.raises(AttributeError, match=f"state.{name} is read-only; change a state.co"):
+        with pytest.raises(AttributeError, match=rf"state.{name} is read-only\. Change a state.co"):
             setattr(simulation.state, name, view)
         assert not np.shares_memory(view, getattr(copy, name))
 

@@ -230,7 +230,7 @@ def test_parquet_holds_what_the_csv_holds(tmp_path):
         ([*SHORT, "--vary", "a.b=uniform:2:1", "--samples", "3"],
          "the numbers of uniform:2:1 are invalid"),
         ([*SHORT, "--vary", "a.b=uniform:1:2", "--samples", "3", "--design", "sobol"],
-         "samples is 3; design sobol requires a power of two. Give 2 or 4."),
+         "samples is 3, but design sobol requires a power of two. Give 2 or 4."),
         ([*SHORT, "--vary", "drone_plugin.k=1,2"], "drone_plugin"),
         ([*SHORT, "--vary", "engine=eigen,ode"], "vary engine: engines are not an axis here."),
         ([*SHORT, "--vary", "frame.mass=1,2", "--measure", "x"], "metric 'x' does not exist"),

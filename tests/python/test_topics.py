@@ -64,7 +64,7 @@ def test_a_command_is_a_message_on_vel_cmd():
         ),
         ("vel_cmd", [1, 2, np.nan, 4], "publish: topic 'vel_cmd': w3 is not a finite number"),
         ("vel_cmd", "fast", "publish: topic 'vel_cmd' is not a 1-dimensional array of numbers"),
-        ("vel_cmd", {"w1": 1, "w5": 2}, "topic 'vel_cmd': fields w1, w5; give w1, w2, w3, w4"),
+        ("vel_cmd", {"w1": 1, "w5": 2}, "topic 'vel_cmd': fields w1, w5. Give w1, w2, w3, w4"),
     ],
 )
 def test_a_message_that_cannot_be_is_refused_and_changes_nothing(topic, values, says):
@@ -254,6 +254,6 @@ def test_the_command_line_logs_topics_as_python_does(logged, tmp_path, monkeypat
 
 def test_topics_to_log_are_names_each_once():
     simulation = quadrotor()
-    assert "topics is 'odom'; give a list of names" in refusal(simulation.run, 0.1, topics="odom")
+    assert "topics is 'odom'. Give a list of names" in refusal(simulation.run, 0.1, topics="odom")
     assert "named twice" in refusal(simulation.run, 0.1, topics=["odom", "odom"])
     assert simulation.time == 0

@@ -119,7 +119,7 @@ def test_other_models_judge_too(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"law": "pidd"}, "there is no controller 'pidd'"),
+        ({"law": "pidd"}, "controller 'pidd' does not exist"),
         ({"law": "controllers:Mine"}, "controllers"),
         ({"law": "pd:spins=1"}, "controller 'pd' has no parameter 'spins'"),
         ({"only": ["kp_xz"]}, "controller 'pd' has no parameter 'kp_xz'. Use some of scale, kp_xy"),
@@ -131,22 +131,22 @@ def test_other_models_judge_too(tmp_path):
         ),
         ({"references": ["step", "step"]}, "reference 'step' is named twice"),
         ({"references": []}, "tuning requires a model, a reference"),
-        ({"references": ["stair"]}, "there is no reference 'stair'"),
+        ({"references": ["stair"]}, "reference 'stair' does not exist"),
         ({"budget": 0}, "budget is 0. Give at least 1."),
         ({"engine": "odd"}, "odd"),
-        ({"engine": 5}, "engine is 5; give a name"),
-        ({"model": 5}, "model is 5; give a name, or several"),
-        ({"references": 5}, "references is 5; give names, or functions that are called as"),
-        ({"held_out": [5]}, r"held_out is \[5\]; give names, or functions"),
+        ({"engine": 5}, "engine is 5. Give a name"),
+        ({"model": 5}, "model is 5. Give a name, or several"),
+        ({"references": 5}, "references is 5. Give names, or functions that are called as"),
+        ({"held_out": [5]}, r"held_out is \[5\]. Give names, or functions"),
         (
             {"references": "hover", "held_out": "hover"},
             "'hover' is both a training and a held-out reference",
         ),
-        ({"only": 5}, "only is 5; give a name, or several"),
+        ({"only": 5}, "only is 5. Give a name, or several"),
         ({"only": "kp_xz"}, "has no parameter 'kp_xz'"),
-        ({"budget": 1.5}, "budget is 1.5; give a whole number"),
-        ({"processes": 0}, "processes is 0; give a whole number from 1 on"),
-        ({"commands": 3}, "there is no option 'commands'"),
+        ({"budget": 1.5}, "budget is 1.5. Give a whole number"),
+        ({"processes": 0}, "processes is 0. Give a whole number from 1 on"),
+        ({"commands": 3}, "option 'commands' does not exist"),
     ],
 )
 def test_what_cannot_be_tuned_is_told_before_anything_flies(arguments, message):
@@ -195,9 +195,9 @@ class TestCommand:
         ("arguments", "message"),
         [
             (["pd", "-o", "pd.txt"], "pd.txt: is not a YAML file. Name a file that ends in .yaml"),
-            (["pd", "-o", "no/pd.yaml"], "there is no folder no"),
-            (["nothing", "-o", "pd.yaml"], "there is no controller 'nothing'"),
-            (["pd", "no.urdf", "-o", "pd.yaml"], "no.urdf: no such file"),
+            (["pd", "-o", "no/pd.yaml"], "folder no does not exist"),
+            (["nothing", "-o", "pd.yaml"], "controller 'nothing' does not exist"),
+            (["pd", "no.urdf", "-o", "pd.yaml"], "no.urdf: neither a file"),
             (
                 ["pd", "-o", "pd.yaml", "--hold-out", "step"],
                 "both a training and a held-out reference",

@@ -157,7 +157,7 @@ def test_a_process_killed_while_it_draws_costs_its_picture_alone(tmp_path, monke
     monkeypatch.setattr(pictures_of_study, "draw", draw)
     (tmp_path / "velocity_induced.png").write_bytes(b"of another study")
     assert main(["validate", *FAST, "--jobs", "2", "--out", str(tmp_path)]) == 3
-    says = "1 of 8 figures failed; the first, attitude_none: its process was ended by SIGKILL"
+    says = "1 of 8 figures failed. The first one: attitude_none: its process was ended by SIGKILL"
     assert capsys.readouterr().err == f"error: {says}\n"
     (row,) = csv.DictReader((tmp_path / "errors.csv").open())
     assert row["failure"] == "" and float(row["max_distance"]) >= 0
@@ -176,7 +176,7 @@ def test_flights_that_fail_are_rows_with_a_reason(tmp_path, capsys):
     printed = capsys.readouterr()
     warning, error = printed.err.splitlines()
     assert "more than half a turn per step, so its" in warning
-    assert error.startswith("error: 1 of 4 flights failed; the first (ode, sim_slow 1, ")
+    assert error.startswith("error: 1 of 4 flights failed. The first one (ode, sim_slow 1, ")
     assert "more than half a turn per step. Use a smaller step" in error
     assert re.search(r"ode +1 +failed\node +8 +[\d.e-]+\n", printed.out)
     rows = list(csv.DictReader((tmp_path / "errors.csv").open()))
@@ -204,18 +204,18 @@ def test_other_commands_motors_and_models_can_be_flown(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["--engine", "eigen,bullet"], "'bullet' is none of gazebo11, ode, eigen"),
+        (["--engine", "eigen,bullet"], "'bullet' does not exist. Choose from gazebo11, ode, eigen"),
         (["--sim-slow", "1,0"], "0 is not greater than 0"),
         (["--sim-slow", "1,x"], "'x' is not a finite number"),
         (["--drag", "none,lift"], "drag 'lift' does not act on this vehicle (none, profile, "),
         (["--set", "drone_plugin.sim_slow=2"], "drone_plugin.sim_slow: every flight has its own"),
         (["--set", "motorpid_plugin.kd=1e-9"], "the mathematical model has proportional motors"),
-        (["--commands", "late.csv"], "the first row is for t = 1; begin at t = 0"),
+        (["--commands", "late.csv"], "the first row is for t = 1. Begin at t = 0"),
         (["--commands", "none.csv"], "none.csv: cannot be read"),
         (["--duration", "1", "--log-every", "1001"], "the flight has 1000 steps"),
         (["--motors", "electric"], "--motors: invalid choice: 'electric'"),
         (["--out", "late.csv"], "late.csv: cannot be made"),
-        (["nowhere.urdf"], "nowhere.urdf: no such file, and no shipped model of that name"),
+        (["nowhere.urdf"], "nowhere.urdf: neither a file nor a shipped model"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_2(arguments, says, tmp_path, monkeypatch, capsys):

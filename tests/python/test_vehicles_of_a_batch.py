@@ -112,19 +112,19 @@ def test_an_array_without_length_is_a_number():
 @pytest.mark.parametrize(
     ("parameters", "told"),
     [
-        ({TAG: [1e-5, 2e-5]}, "a value for each vehicle is an array of shape (2,)"),
-        ({TAG: (1e-5, 2e-5)}, "a value for each vehicle is an array of shape (2,)"),
-        ({"frame.mass": [1, 2]}, "a value for each vehicle is an array of shape (2,)"),
-        ({"xacro.arm_length": [0.1, 0.2]}, "a value for each vehicle is an array of shape (2,)"),
-        ({"xacro.sim_slow": [1, 10]}, "a value for each vehicle is an array of shape (2,)"),
-        ({TAG: np.full((2, 1), 1e-5)}, f"set {TAG}: an array of shape (2, 1) for 2 vehicles; give"),
+        ({TAG: [1e-5, 2e-5]}, "For a value per vehicle, give an array of shape (2,)."),
+        ({TAG: (1e-5, 2e-5)}, "For a value per vehicle, give an array of shape (2,)."),
+        ({"frame.mass": [1, 2]}, "For a value per vehicle, give an array of shape (2,)."),
+        ({"xacro.arm_length": [0.1, 0.2]}, "For a value per vehicle, give an array of shape (2,)."),
+        ({"xacro.sim_slow": [1, 10]}, "For a value per vehicle, give an array of shape (2,)."),
+        ({TAG: np.full((2, 1), 1e-5)}, f"set {TAG}: an array of shape (2, 1) for 2 vehicles. Give"),
         ({TAG: np.full((2, 3, 1), 1e-5)}, f"set {TAG}: an array of shape (2, 3, 1) for 2 vehicles"),
         (
             {"frame.mass": np.ones((2, 1))},
             "set frame.mass: an array of shape (2, 1) for 2 vehicles",
         ),
         ({"xacro.frame_mass": np.ones(3)}, "set xacro.frame_mass: 3 values for 2 vehicles"),
-        ({TAG: np.full((2, 2), 1e-5)}, "a value for each vehicle is an array of shape (2,)"),
+        ({TAG: np.full((2, 2), 1e-5)}, "For a value per vehicle, give an array of shape (2,)."),
     ],
 )
 def test_values_that_are_not_one_for_each_vehicle_are_refused(parameters, told):

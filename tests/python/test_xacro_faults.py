@@ -1,4 +1,4 @@
-"""What xacro cannot expand is told with the argument that is to blame."""
+"""Errors of xacro name the argument that causes them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from quadcore.model import resources
 SHIPPED = Path(resources.list_shipped("urdf")["quadrotor"]).name
 
 
-def told(**arguments):
+def read_error(**arguments):
     message = refusal(qc.Simulation, xacro_args=arguments)
     place, _, what = message.partition(": ")
     assert Path(place.rpartition(":")[0]).name == SHIPPED and int(place.rpartition(":")[2]) > 0
@@ -23,17 +23,23 @@ def told(**arguments):
 @pytest.mark.filterwarnings("ignore::quadcore.QuadcoreWarning")
 def test_the_argument_that_cannot_be_used_is_named_with_what_can():
     every = "all, none, induced, translational, profile, parasitic"
-    says = f"xacro argument 'drag' is 'foo': there is no 'foo'; write one of {every}; its default"
-    assert told(drag="foo").startswith(says)
-    assert told(sim_slow=1, drag="foo", nothing=3).startswith(says)
-    assert "write one of pid, first_order; its default is 'pid'" in told(motor="foo")
-    long = told(arm_length="long")
-    assert long.startswith("xacro argument 'arm_length' is 'long': unsupported operand")
-    assert long.endswith("; its default is '0.1'")
+    says = (
+        "xacro argument 'drag' is 'foo' (default 'all'): key 'foo' does not exist. "
+        f"Use one of {every}."
+    )
+    assert read_error(drag="foo").startswith(says)
+    assert read_error(sim_slow=1, drag="foo", nothing=3).startswith(says)
+    assert "(default 'pid'): key 'foo' does not exist. Use one of pid, first_order." in read_error(
+        motor="foo"
+    )
+    long = read_error(arm_length="long")
+    assert long.startswith(
+        "xacro argument 'arm_length' is 'long' (default '0.1'): unsupported operand"
+    )
 
 
 def test_of_two_arguments_at_fault_neither_is_blamed_alone():
-    what = told(arm_length="long", drag="foo")
+    what = read_error(arm_length="long", drag="foo")
     assert "xacro argument" not in what and "evaluating expression" in what
 
 
@@ -44,15 +50,17 @@ MODEL = """<robot name="x" xmlns:xacro="http://www.ros.org/wiki/xacro">
 """
 
 
-def test_a_key_that_a_file_itself_lacks_is_told_with_the_expression(tmp_path):
+def test_a_key_that_a_file_itself_lacks_is_named_with_the_expression(tmp_path):
     path = tmp_path / "x.urdf.xacro"
     path.write_text(MODEL)
-    assert refusal(qc.Simulation, path) == f"{path}:3: there is no 'b'; mend 'table['b']'"
+    assert (
+        refusal(qc.Simulation, path) == f"{path}:3: key 'b' does not exist. Correct 'table['b']'."
+    )
     path.write_text(MODEL.replace("table['b']", "dict(c=1, d=2)['b']"))
-    assert refusal(qc.Simulation, path) == f"{path}:3: there is no 'b'; write one of c, d"
+    assert refusal(qc.Simulation, path) == f"{path}:3: key 'b' does not exist. Use one of c, d."
 
 
-def test_a_file_for_xacro_that_is_called_a_urdf_is_told_to_be_renamed(tmp_path):
+def test_a_file_for_xacro_that_is_called_a_urdf_is_to_be_renamed(tmp_path):
     path = tmp_path / "x.urdf"
     path.write_text(MODEL)
     message = refusal(qc.Simulation, path)

@@ -39,7 +39,7 @@ def warn_of_commands(simulation: Simulation, plan: FlightPlan) -> None:
 def refuse_log_every(arguments: argparse.Namespace, what: str) -> None:
     """Raise `InputError` if --log-every was given to a command that writes no log."""
     if arguments.log_every is not None:
-        raise InputError(f"{what} writes no log; leave --log-every out")
+        raise InputError(f"{what} writes no log. Leave --log-every out.")
 
 
 def _turn_one_way(speeds: np.ndarray) -> bool:

@@ -73,7 +73,10 @@ def compare_models(arguments: argparse.Namespace) -> None:
     """Print how the models differ, simulate them, and print how the flights differ."""
     arguments, plan = make_plan(arguments, _make_plan)
     if arguments.against is not None and arguments.against > len(plan):
-        raise InputError(f"--against {arguments.against}: there are only {len(plan)} flights")
+        raise InputError(
+            f"--against {arguments.against}: there are only {len(plan)} flights. "
+            "Use a smaller number."
+        )
     with output_folder(arguments.out, FILES, "comparison.json"):
         _compare(arguments, plan)
 
@@ -117,9 +120,9 @@ def _make_plan(arguments: argparse.Namespace) -> Plan:
             f"--against {number}."
         )
     if arguments.logs and arguments.out is None:
-        raise InputError("--logs needs --out")
+        raise InputError("--logs requires a folder. Add --out.")
     if arguments.wrenches and arguments.out is None:
-        raise InputError("--wrenches needs --out")
+        raise InputError("--wrenches requires a folder. Add --out.")
     plan = Plan(
         arguments.model,
         reading.read_axes(arguments),
@@ -131,7 +134,7 @@ def _make_plan(arguments: argparse.Namespace) -> Plan:
     )
     if len(plan) == 1 and not plan.axes:
         raise InputError(
-            "there is one model and nothing is varied; name another model, or use --vary"
+            "there is one model and nothing is varied. Name another model, or use --vary."
         )
     return plan
 

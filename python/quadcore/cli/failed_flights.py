@@ -24,5 +24,5 @@ def report_failures(failures: Sequence[str], refused: int, name: Callable[[int],
         return
     count, first = len(failures), f"{name(failed[0])}: {failures[failed[0]]}"
     if refused == count:
-        raise InputError(f"{count} of {count} flights were refused; the first, {first}")
-    raise FlightError(f"{len(failed)} of {count} flights failed; the first, {first}")
+        raise InputError(f"{count} of {count} flights were refused. The first one: {first}")
+    raise FlightError(f"{len(failed)} of {count} flights failed. The first one: {first}")

@@ -139,7 +139,7 @@ def _read_bounds(name: str, text: str) -> tuple[float, float]:
     minimum = parse_number(low) if low else -math.inf
     maximum = parse_number(high) if high else math.inf
     if minimum is None or maximum is None or ":" not in text:
-        raise InputError(f"bound {name}: '{text}' is not a range; write LOW:HIGH, LOW: or :HIGH")
+        raise InputError(f"bound {name}: '{text}' is not a range. Write LOW:HIGH, LOW: or :HIGH.")
     return minimum, maximum
 
 

@@ -71,7 +71,9 @@ def show_model(arguments: argparse.Namespace) -> None:
         written.append(arguments.picture)
     if arguments.vehicle is not None:
         if arguments.vehicle.suffix.lower() != ".mat":
-            raise InputError(f"--vehicle {arguments.vehicle}: name a .mat file")
+            raise InputError(
+                f"--vehicle {arguments.vehicle}: is not a .mat file. Name a file that ends in .mat."
+            )
         Vehicle.of(simulation).to_mat(arguments.vehicle)
         written.append(arguments.vehicle)
     if not arguments.json:
@@ -81,7 +83,7 @@ def show_model(arguments: argparse.Namespace) -> None:
 def _show_models(arguments: argparse.Namespace) -> None:
     for option in ("set", "xacro", "ignore", "picture", "vehicle"):
         if getattr(arguments, option):
-            raise InputError(f"--{option} needs a MODEL; name one")
+            raise InputError(f"--{option} requires a MODEL. Name one.")
     entries = list_entries("models")
     if arguments.json:
         terminal.print_json(entries)

@@ -12,6 +12,7 @@ import yaml
 
 from .._core import InputError
 from ..support.yaml_nodes import find_line, read_pairs, read_root, read_scalar
+from .parser import end_sentence
 
 _SIGNS = {"set": "=", "vary": "=", "xacro": ":="}
 """Options that give values to keys, with the sign between them."""
@@ -60,7 +61,8 @@ class OptionsFile:
             action = parser._option_string_actions.get(f"--{name}")
             if action is None or name in ("help", "options"):
                 raise InputError(
-                    f"{path}:{find_line(key)}: there is no option '{name}'; see {parser.prog} -h"
+                    f"{path}:{find_line(key)}: option '{name}' does not exist. "
+                    f"See {parser.prog} --help."
                 )
             for text, line in self._write_values(name, action, node):
                 self._store(action, text, line)
@@ -101,7 +103,9 @@ class OptionsFile:
             read = True if action.nargs == 0 else self._parser._get_values(action, [text])
         except argparse.ArgumentError as error:
             where = f"{self._path}:{line}"
-            raise InputError(f"{where}: {error}; see {self._parser.prog} --help") from None
+            raise InputError(
+                f"{where}: {end_sentence(str(error))} See {self._parser.prog} --help."
+            ) from None
         before = getattr(self._read, action.dest, [])
         setattr(self._read, action.dest, [*before, read] if _may_repeat(action) else read)
 

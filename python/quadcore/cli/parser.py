@@ -13,18 +13,23 @@ from ..studies.options import GROUPS
 from ..support.parameters import suggest
 
 
+def end_sentence(message: str) -> str:
+    """Add a full stop unless the message ends with one, or with a question mark."""
+    return message if message.endswith((".", "?")) else f"{message}."
+
+
 class Parser(argparse.ArgumentParser):
     """Raises `InputError` for a wrong option, as for any other wrong input."""
 
     def error(self, message: str) -> NoReturn:  # noqa: D102
-        raise InputError(f"{message}; see {self.prog} --help")
+        raise InputError(f"{end_sentence(message)} See {self.prog} --help.")
 
     def parse_known_args(self, *given: Any, **named: Any) -> Any:  # type: ignore[override]  # noqa: D102
         read, unknown = super().parse_known_args(*given, **named)
         if unknown:  # reported by the command, not by the parser of all commands
             options = [word.partition("=")[0] for word in unknown if word.startswith("-")]
             near = suggest(options[0], list(self._option_string_actions)) if options else ""
-            self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+            self.error(f"unrecognized arguments: {' '.join(unknown)}.{near}")
         return read, unknown
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
@@ -32,7 +37,7 @@ class Parser(argparse.ArgumentParser):
             super()._check_value(action, value)
         except argparse.ArgumentError as error:
             near = suggest(str(value), [str(choice) for choice in action.choices or ()])
-            raise argparse.ArgumentError(action, f"{error.message}{near}") from None
+            raise argparse.ArgumentError(action, f"{error.message}.{near}") from None
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:  # noqa: D102
         sys.stdout.flush()  # reports a full disk while that is still possible

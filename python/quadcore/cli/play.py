@@ -95,7 +95,9 @@ def read_logs(arguments: argparse.Namespace) -> Tuple[List[Path], List[str]]:
     if arguments.names is None:
         return logs, _name_by_path(logs, arguments.logs)
     if len(arguments.names) != len(logs):
-        raise InputError(f"--names: names {len(arguments.names)} of {len(logs)} flights; name each")
+        raise InputError(
+            f"--names: {len(arguments.names)} name(s) for {len(logs)} flight(s). Name each flight."
+        )
     return logs, arguments.names
 
 
@@ -106,7 +108,7 @@ def _name_by_path(logs: Sequence[Path], given: Sequence[Path]) -> List[str]:
     parts: List[Tuple[str, ...]] = [log.with_suffix("").parts for log in logs]
     if len(set(logs)) < len(logs):
         twice = next(log for i, log in enumerate(logs) if log in logs[:i])
-        raise InputError(f"{twice}: is named twice; name each log once")
+        raise InputError(f"{twice}: is named twice. Name each log once.")
     if len(set(parts)) < len(parts):  # a.csv and a.mat
         return [str(log) for log in logs]
     while len({path[-1] for path in parts}) == 1 and min(map(len, parts)) > 1:

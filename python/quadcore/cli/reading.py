@@ -60,9 +60,11 @@ def read_control(arguments: argparse.Namespace) -> ControlSetup:
     if arguments.controller is None:
         for name, value in given.items():
             if value is not None:
-                raise InputError(f"--{name.replace('_', '-')} needs a --controller; name one")
+                raise InputError(
+                    f"--{name.replace('_', '-')} requires a controller. Add --controller."
+                )
     elif arguments.commands is not None:
-        raise InputError("--commands and --controller exclude each other; give one of them")
+        raise InputError("--commands and --controller exclude each other. Give one of them.")
     return ControlSetup.single(**given, spawn=arguments.spawn)
 
 
@@ -86,6 +88,6 @@ def collect_unique(option: str, pairs: list[tuple[str, str]]) -> dict[str, str]:
     found: dict[str, str] = {}
     for key, value in pairs:
         if key in found:
-            raise InputError(f"{option}: {key} is given twice; keep one")
+            raise InputError(f"{option}: {key} is given twice. Keep one.")
         found[key] = value
     return found

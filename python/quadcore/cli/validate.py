@@ -124,12 +124,12 @@ def judge_recording(arguments: argparse.Namespace) -> None:
     for option in ("sim_slow", "drag"):
         if getattr(arguments, option) is not None:
             raise InputError(
-                f"--plant is one flight; give its --{option.replace('_', '-')} with --set"
+                f"--plant is one flight. Give its --{option.replace('_', '-')} with --set."
             )
     for name, default in arguments.of_flights.items():
         if getattr(arguments, name) != default:
             option = f"--{name.replace('_', '-')}"
-            raise InputError(f"--plant is a recorded flight; leave {option} out")
+            raise InputError(f"--plant is a recorded flight. Leave {option} out.")
     plan = FlightPlan.of(
         **reading.read_model_arguments(arguments), world=arguments.world, dt=arguments.dt
     )
@@ -220,7 +220,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
         with interrupts.hold_signals():
             write_report(study, in_order, arguments.out)
     if failed:
-        failures.append(f"{len(failed)} of {len(names)} figures failed; the first, {failed[0]}")
+        failures.append(f"{len(failed)} of {len(names)} figures failed. The first one: {failed[0]}")
     return in_order
 
 
@@ -231,7 +231,7 @@ def _describe_failures(study: Study) -> List[str]:
         return []
     case = failed[0].case
     return [
-        f"{len(failed)} of {len(study.rows)} flights failed; the first ({case.plant}, "
+        f"{len(failed)} of {len(study.rows)} flights failed. The first one ({case.plant}, "
         f"sim_slow {case.sim_slow:g}, drag {case.drag}): {failed[0].failure}"
     ]
 

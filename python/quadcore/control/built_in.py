@@ -48,7 +48,7 @@ class BuiltInController:
         self.delay = delay
         self.spins = list(spins)
         self.belief = belief
-        self.parameters = check_values(f"law '{name}'", parameters)
+        self.parameters = check_values(f"controller '{name}'", parameters)
         self._controller: Optional[_core.Controller] = None
         self._period = math.nan
 
@@ -69,20 +69,22 @@ class BuiltInController:
         self._controller = _core.Controller(
             self.name, vehicle, simulation, self.parameters, self.spins
         )
-        rate = check_rate_or_delay(f"law '{self.name}'", "rate", self.rate)
+        rate = check_rate_or_delay(f"controller '{self.name}'", "rate", self.rate)
         self._period = max(1 / rate, simulation.dt)  # called once a step at most
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
         """Return the signed rotor speeds, rad/s; see `Controller`."""
         if reference is None:
-            raise _core.InputError(f"law '{self.name}' has no reference to follow; give one")
+            raise _core.InputError(
+                f"controller '{self.name}' has no reference to follow. Give one."
+            )
         return self.core.command(self._period, state, reference)
 
     @property
     def core(self) -> _core.Controller:
         """The controller in the core, which `reset` makes."""
         if self._controller is None:
-            raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
+            raise _core.InputError(f"controller '{self.name}' is not ready. Call its reset().")
         return self._controller
 
     @property
@@ -99,7 +101,10 @@ class BuiltInController:
     def to_dict(self) -> Dict[str, Any]:
         """Return the attributes by name."""
         if self.belief is not None:
-            raise _core.InputError(f"law '{self.name}' with a belief of its own cannot be told")
+            raise _core.InputError(
+                f"controller '{self.name}' with its own belief cannot be written. "
+                "Remove the belief."
+            )
         return {n: v for n, v in self.__dict__.items() if not n.startswith("_")}
 
     def __getstate__(self) -> Dict[str, Any]:

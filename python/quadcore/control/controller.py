@@ -100,12 +100,12 @@ def check_callable(controller: Any) -> None:
     form = "controller(t, state, reference)"
     if not callable(controller):
         raise InputError(
-            f"controller is {shorten(controller)}; give a function, or an object, that is called "
-            f"as {form}"
+            f"controller is {shorten(controller)}. Give a function or an object that is called "
+            f"as {form}."
         )
     if inspect.isclass(controller):
         name = controller.__name__
-        raise InputError(f"controller is the class {name}; give an instance: {name}()")
+        raise InputError(f"controller is the class {name}. Give an instance: {name}().")
     try:
         signature = inspect.signature(controller)
     except (TypeError, ValueError):  # compiled functions may have no signature

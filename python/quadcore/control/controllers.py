@@ -50,8 +50,8 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
         read = gains.read(text)
         if vehicle and read.vehicle not in ("", vehicle):
             warn(
-                f"{text}: these gains are for '{read.vehicle}', but '{vehicle}' flies with them; "
-                "tune some for it (quadcore tune)"
+                f"{text}: these gains are for '{read.vehicle}', but '{vehicle}' uses them. "
+                "Tune gains for it with quadcore tune."
             )
         if read.law in NAMES:
             return _set_all(read.make(), values or {})
@@ -59,13 +59,13 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
         return _make_own(name, {**given, **(values or {})})
     name, _, rest = text.partition(":")
     if name in NAMES:
-        given = read_values(f"law '{text}'", rest)
+        given = read_values(f"controller '{text}'", rest)
         return _set_all(make_for_vehicle(name, vehicle), {**given, **(values or {})})
     if ":" in text or names_file(text):
         return _make_own(text, values or {})
     raise _core.InputError(
-        f"there is no controller '{text}'{suggest(text, NAMES)}; write one of "
-        f"{', '.join(NAMES)}, a gains file that ends in .yaml, FILE.py[:NAME], or MODULE:NAME"
+        f"controller '{text}' does not exist.{suggest(text, NAMES)} Choose one of "
+        f"{', '.join(NAMES)}, a gains file that ends in .yaml, FILE.py[:NAME], or MODULE:NAME."
     )
 
 
@@ -185,4 +185,6 @@ else:
             return _MAKERS[name]
         except KeyError:
             known = ", ".join(NAMES)
-            raise AttributeError(f"there is no controller '{name}'; there are {known}") from None
+            raise AttributeError(
+                f"controller '{name}' does not exist. Use one of {known}."
+            ) from None

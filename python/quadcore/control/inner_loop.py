@@ -163,12 +163,14 @@ def _check_target(wanted: SetPoint) -> Any:
     except (TypeError, ValueError) as error:
         raise _core.InputError(f"{who} {name}: {error}") from None
     if target.shape != (count,) or not np.isfinite(target).all():
-        raise _core.InputError(f"{who} {name} is {shorten(wanted[0])}; give {count} finite numbers")
+        raise _core.InputError(
+            f"{who} {name} is {shorten(wanted[0])}. Give {count} finite numbers."
+        )
     if count == 4:
         length = float(np.linalg.norm(target))
         if abs(length - 1) > _ROUNDNESS:
-            raise _core.InputError(f"{who} {name} has length {length:g}; give a unit quaternion")
+            raise _core.InputError(f"{who} {name} has length {length:g}. Give a unit quaternion.")
         target = target / length
     if not (isinstance(wanted.thrust, Real) and math.isfinite(wanted.thrust)):
-        raise _core.InputError(f"{who} thrust is {shorten(wanted.thrust)}; give N")
+        raise _core.InputError(f"{who} thrust is {shorten(wanted.thrust)}. Give a force in N.")
     return target, float(wanted.thrust)

@@ -22,5 +22,5 @@ def check_rate_or_delay(who: str, name: str, value: Any) -> float:
     if isinstance(value, Real) and _core.is_timing(name, float(value)):
         return float(value)
     raise _core.InputError(
-        f"{who}: its {name} is {shorten(value)}; give {_WORDS[name]}, {_ROWS[name].range}"
+        f"{who}: its {name} is {shorten(value)}. Give {_WORDS[name]}, {_ROWS[name].range}."
     )

@@ -240,16 +240,16 @@ def parse(text: str) -> Shape:
     name, _, rest = text.partition(":")
     if name not in NAMES:
         raise _core.InputError(
-            f"there is no reference '{name}'{suggest(name, NAMES)}; write one of "
+            f"reference '{name}' does not exist.{suggest(name, NAMES)} Choose one of "
             f"{', '.join(NAMES)}, or the name of a "
-            f"file that ends in {', '.join(_FILES)}"
+            f"file that ends in {', '.join(_FILES)}."
         )
     if name in _OF_ROWS:
         parts = rest.split(",")
         given = [part for part in parts if "=" in part and not part.lower().endswith(_FILES)]
         file = ",".join(part for part in parts if part not in given)
         if not file and name != _SHIPPED.stem:
-            raise _core.InputError(f"reference '{name}' has no rows; write {name}:FILE")
+            raise _core.InputError(f"reference '{name}' has no rows. Write {name}:FILE.")
         parameters = read_values(f"reference '{text}'", ",".join(given))
         return Shape(name, read_rows(Path(file) if file else _SHIPPED), **parameters)
     return Shape(name, **read_values(f"reference '{text}'", rest))
@@ -349,4 +349,6 @@ else:
             return _MAKERS[name]
         except KeyError:
             known = ", ".join(NAMES)
-            raise AttributeError(f"there is no reference '{name}'; there are {known}") from None
+            raise AttributeError(
+                f"reference '{name}' does not exist. Use one of {known}."
+            ) from None

@@ -50,8 +50,8 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
         topics = sorted({connection.topic for connection in found})
         if len(topics) != 1:
             raise InputError(
-                f"{path}: topics of commands: {', '.join(topics) or 'none'}; a bag of commands has "
-                "one that ends in vel_cmd, std_msgs/Float64MultiArray"
+                f"{path}: topics of commands: {', '.join(topics) or 'none'}. Record one topic that "
+                "ends in vel_cmd, std_msgs/Float64MultiArray."
             )
         start = bag.start_time if bag.start_time > _ON_A_WALL * 1e9 else 0
         rows: Dict[int, np.ndarray] = {}  # of those of one time the last counts
@@ -59,8 +59,8 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
             speeds = np.asarray(message.data, dtype=float)
             if len(speeds) != len(names) - 1:
                 raise InputError(
-                    f"{path}: {topics[0]}: a message of {len(speeds)} numbers; this model with "
-                    f"{len(names) - 1} rotors takes {', '.join(names[1:])}"
+                    f"{path}: {topics[0]}: a message of {len(speeds)} numbers, but the model has "
+                    f"{len(names) - 1} rotors. Record {', '.join(names[1:])}."
                 )
             # The first message may lie a nanosecond late, see write_log.
             rows[max(0, time - start - (time == 1))] = speeds
@@ -102,7 +102,9 @@ def _read_whole_rows(bag: Any, found: Sequence[Any]) -> Tuple[List[str], np.ndar
     messages = [message for _, message in read_messages(bag, found)]
     labels = [dimension.label for dimension in messages[0].layout.dim] if messages else []
     if not labels:
-        raise InputError(f"{bag.path}: {LOG} does not name its columns; quadcore wrote other bags")
+        raise InputError(
+            f"{bag.path}: {LOG} does not name its columns. Use a bag that quadcore wrote."
+        )
     return labels[0].split(","), np.array([m.data for m in messages], dtype=float), labels[1:]
 
 
@@ -122,7 +124,7 @@ def _read_node_rows(path: Path, bag: Any) -> Tuple[List[str], np.ndarray, List[s
         if len(joints[stamp].velocity) != rotors:
             raise InputError(
                 f"{path}: joint_states: {rotors} joints at first, {len(joints[stamp].velocity)} at "
-                f"t = {stamp / 1e9:g} s; a log has the same throughout"
+                f"t = {stamp / 1e9:g} s. Record flights of different vehicles separately."
             )
         rows.append([
             stamp // step * (step / 1e9),  # as simulations count it
@@ -142,9 +144,9 @@ def _find_topic(path: Path, bag: Any, kind: str, name: str) -> List[Any]:
     topics = sorted({connection.topic for connection in found})
     if len(topics) != 1:
         raise InputError(
-            f"{path}: topics that end in {name}: {', '.join(topics) or 'none'}; a bag of a flight "
-            "has one ground_truth/odometry and one joint_states, with the speeds of the rotors; "
-            "record both, or give a .csv or .mat file with the columns of a log"
+            f"{path}: topics that end in {name}: {', '.join(topics) or 'none'}. Record one "
+            "ground_truth/odometry and one joint_states with the rotor speeds, or give a .csv or "
+            ".mat file with the columns of a log."
         )
     return found
 
@@ -168,8 +170,8 @@ def read_messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
         times = [entry.time for entry in written]
         if times != sorted(times):
             raise InputError(
-                f"{bag.path}: {connection.topic}: its time goes back, as after a reset; record "
-                "each flight in a bag of its own"
+                f"{bag.path}: {connection.topic}: its time goes back, as after a reset. Record "
+                "each flight in a separate bag."
             )
     messages = Messages(2 if is_ros2(bag.path) else 1)
     for connection, time, data in bag.messages(found):

@@ -37,8 +37,8 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     if header.replace(" ", "") != ",".join(names):
         raise InputError(
-            f"{path}:1: the header is '{header[:80]}'; this model with {len(names) - 1} rotors "
-            f"takes '{','.join(names)}'"
+            f"{path}:1: the header is '{header[:80]}', but the model has {len(names) - 1} rotors. "
+            f"Write '{','.join(names)}'."
         )
     rows = _read_numbers(path, lines, 2, names)
     return Table(rows, lambda row: f"{path}:{2 + row}", "")
@@ -100,7 +100,7 @@ def _is_number(cell: str) -> bool:
 
 def _find_fault(columns: Sequence[str], cells: Sequence[str]) -> str:
     column, cell = next(pair for pair in zip(columns, cells) if not _is_number(pair[1]))
-    return f"column '{column}' holds '{cell.strip()[:80]}'; write a number such as -471.5"
+    return f"column '{column}' contains '{cell.strip()[:80]}'. Write a number such as -471.5."
 
 
 def write_log(

@@ -33,8 +33,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
         If a column is missing, is not a vector of real numbers, or differs in length.
     """
     expected = (
-        f"this model with {len(names) - 1} rotors takes {', '.join(names)}, or one matrix or "
-        "struct of them"
+        f"For {len(names) - 1} rotors, save {', '.join(names)}, or one matrix or struct of them"
     )
     return Table(
         read_table(path, names, len(names), expected),
@@ -51,7 +50,7 @@ def read_path(path: Path) -> np.ndarray:
     InputError
         If a column is missing, is not a vector of real numbers, or differs in length.
     """
-    expected = "a path is t, x, y, z[, yaw], or one matrix or struct of them"
+    expected = "Save t, x, y, z[, yaw], or one matrix or struct of them."
     return read_table(path, _OF_PATH, 4, expected)
 
 
@@ -87,7 +86,7 @@ def read_log(path: Path) -> LogRows:
 def _read_wrench(path: Path, name: str, value: Any) -> np.ndarray:
     wrench = np.asarray(value)
     if wrench.dtype.kind not in "iuf" or wrench.ndim != 2 or wrench.shape[1] != 6:
-        raise InputError(f"{path}: {name} is no matrix of 6 columns; give force and torque")
+        raise InputError(f"{path}: {name} is not a matrix of 6 columns. Give force and torque.")
     return wrench.astype(float)
 
 
@@ -100,8 +99,8 @@ def _split_layout(path: Path, variables: Dict[str, Value]) -> Dict[str, Any]:
         names = named if isinstance(named, list) else log_columns(rotors)
         if len(names) != log.shape[1]:
             raise InputError(
-                f"{path}: {_LOG} has {log.shape[1]} columns, {len(names)} are named; name each in "
-                "the cell array columns"
+                f"{path}: {_LOG} has {log.shape[1]} columns, {len(names)} are named. Name each in "
+                "the cell array columns."
             )
         of_state, topics = split_columns(list(map(str, names)), log)
         vectors: Dict[str, Any] = {name: log[:, [i]] for i, name in enumerate(of_state)}
@@ -143,7 +142,7 @@ def write_log(
     contains the ignored parts, if any. All other `LAYOUTS` write the variable ``log``.
     """
     if layout not in LAYOUTS:
-        raise InputError(f"layout '{layout}' is none of {', '.join(LAYOUTS)}; name one")
+        raise InputError(f"layout '{layout}' does not exist. Use one of {', '.join(LAYOUTS)}.")
     of_state, topics = split_columns(columns, table)
     variables: Dict[str, Any] = {name: table[:, i] for i, name in enumerate(of_state)}
     variables.update((f"wrench_{name}", value) for name, value in wrenches.items())

@@ -72,7 +72,7 @@ def _inflate(content: Elements, most: int) -> Elements:
         head = Elements(memoryview(stream.decompress(content.data, 8)), content.order)
         size = head.take_size(MATRIX)
         if size > _LARGEST:
-            raise ValueError(f"a variable of {size} bytes; at most {_LARGEST} are read")
+            raise ValueError(f"a variable of {size} bytes is larger than {_LARGEST}")
         data = stream.decompress(stream.unconsumed_tail, min(size, most)) if size else b""
         if size <= most:
             stream.decompress(stream.unconsumed_tail, 1)  # its end, and with it the checksum

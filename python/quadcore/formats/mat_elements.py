@@ -102,7 +102,7 @@ class Elements:
         if kind >> 16:  # a small one: its content is in the tag
             kind, size = kind & 0xFFFF, kind >> 16
             if size > 4:
-                raise ValueError(f"a small element of {size} bytes; it has room for 4")
+                raise ValueError(f"a small element of {size} bytes has more than 4")
             return kind, size, at + 4, at + 8
         padding = 0 if kind in (MATRIX, COMPRESSED) else -size % 8
         return kind, size, at + 8, at + 8 + size + padding

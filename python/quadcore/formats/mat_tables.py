@@ -45,7 +45,7 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
         if len(tables) == 1 and not set(names[:needed]) <= set(held):
             return tables
         found = ", ".join(sorted(held)) or "no variables"
-        raise InputError(f"{path}: holds {found}; {expected}")
+        raise InputError(f"{path}: contains {found}. {expected}")
 
     variables = load(path, choose)
     if set(names[:needed]) <= set(variables):
@@ -53,7 +53,7 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
     [(name, value)] = variables.items()
     if isinstance(value, dict) and set(names[:needed]) <= set(value):
         if _is_one_more(value, names):
-            raise InputError(f"{path}: {name} holds {', '.join(value)}; {expected}")
+            raise InputError(f"{path}: {name} contains {', '.join(value)}. {expected}")
         return stack_vectors(path, {column: value[column] for column in names if column in value})
     table = _join_signals(value) if isinstance(value, dict) else value
     if not (
@@ -62,7 +62,7 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
         and table.ndim == 2
         and needed <= table.shape[1] <= len(names)
     ):
-        raise InputError(f"{path}: {name} is {_describe(value)}; {expected}")
+        raise InputError(f"{path}: {name} is {_describe(value)}. {expected}")
     return table.astype(float)
 
 

@@ -47,7 +47,7 @@ def _load(path: Path, stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
     head = stream.read(520)
     stream.seek(0)
     if head.startswith(_OCTAVE_TEXT):
-        raise InputError(f"{path}: is a text by Octave; save it with the option -v7")
+        raise InputError(f"{path}: is a text file of Octave. Save it with the option -v7.")
 
     def chosen(held: Mapping[str, Variable]) -> Sequence[str]:
         return _check_chosen(path, choose(held), held)
@@ -69,5 +69,7 @@ def _check_chosen(path: Path, names: Sequence[str], held: Mapping[str, Variable]
     for name in names:
         values = math.prod(held[name].shape)
         if values > _MOST_VALUES:
-            raise InputError(f"{path}: {name} has {values} values; at most {_MOST_VALUES} are read")
+            raise InputError(
+                f"{path}: {name} has {values} values, more than {_MOST_VALUES}. Save fewer."
+            )
     return names

@@ -93,8 +93,8 @@ def check_log_columns(place: str, columns: Sequence[str]) -> int:
     expected = log_columns(max(0, len(of_state) - len(fixed)))
     if list(columns[: len(expected)]) != expected:
         raise InputError(
-            f"{place}: no log of quadcore: the columns are '{','.join(columns)[:80]}'; "
-            f"a log has '{','.join(fixed)}', a column of each rotor, and those of topics"
+            f"{place}: this is not a log: the columns are '{','.join(columns)[:80]}'. "
+            f"Use '{','.join(fixed)}', a column per rotor, then those of topics."
         )
     return len(expected)
 
@@ -112,7 +112,7 @@ def check_log_rows(place: Callable[[int], str], rows: np.ndarray, of_state: int)
         Number of columns of the state; other columns may be NaN.
     """
     if len(rows) == 0:
-        raise InputError(f"{place(0)}: no row; a log holds the start at least")
+        raise InputError(f"{place(0)}: the log has no rows. Write one for the start at least.")
     wrong = ~np.isfinite(rows[:, :of_state]).all(axis=1)
     if wrong.any():
         raise InputError(f"{place(int(wrong.argmax()))}: the state is not finite")

@@ -11,7 +11,7 @@ try:
     from gymnasium.vector import AutoresetMode  # noqa: F401  (new in 1.1)
 except ImportError:
     raise InputError(
-        "quadcore.gym needs the package gymnasium, 1.1 or newer; install it: "
+        "quadcore.gym requires the package gymnasium, 1.1 or newer. Install it: "
         "pip install 'quadcore[gym]'"
     ) from None
 

@@ -137,7 +137,7 @@ class Task:
                 if name not in known:
                     near = suggest(str(name), list(known))
                     raise InputError(
-                        f"{what} '{name}' does not exist{near}. Use some of {', '.join(known)}."
+                        f"{what} '{name}' does not exist.{near} Use some of {', '.join(known)}."
                     )
         for name in ("rate", "duration", "reach", "authority"):
             value = getattr(rules, name)

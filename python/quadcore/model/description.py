@@ -95,7 +95,7 @@ def read_both(
     if not isinstance(model, Model):
         model = read_model(model, xacro_args, names)
     elif xacro_args:
-        raise InputError("xacro_args: the model is read already; give them to its reader")
+        raise InputError("xacro_args: the model has already been read. Give them to read_model.")
     if not isinstance(world, World):
         world = read_world(world, names)
     _core.check_ignored(names, [model.ignored_elements, world.ignored_elements])
@@ -128,7 +128,9 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
     path = _find("model", model, "urdf")
     if path.suffix not in _XACRO:
         if xacro_args:
-            raise InputError(f"{path}: takes no xacro arguments: it is no .xacro file")
+            raise InputError(
+                f"{path}: takes no xacro arguments, as it is not a .xacro file. Leave them out."
+            )
         return _plain(path)
     # Only models that need it pay for importing xacro.
     with LOCK:
@@ -181,12 +183,13 @@ def _find(kind: str, name: str, folder: str) -> Path:
     if name in by_name:
         return by_name[name]
     if path.is_dir():
-        raise InputError(f"{name}: is a folder; name the {kind} file in it")
+        raise InputError(f"{name}: is a folder. Name the {kind} file in it.")
     if path.exists():
         check_regular(path)
-    known = f"({', '.join(shipped) or 'none'})"
-    near = suggest(name, list(by_name))
-    raise InputError(f"{name}: no such file, and no shipped {kind} of that name {known}{near}")
+    near, known = suggest(name, list(by_name)), ", ".join(shipped) or "none"
+    raise InputError(
+        f"{name}: neither a file nor a shipped {kind}.{near} Name a file, or one of {known}."
+    )
 
 
 def _plain(path: Path) -> Document:

@@ -36,7 +36,7 @@ def split_xacro_arguments(
         if owner != XACRO:
             left[key] = value
         elif name in arguments:
-            raise InputError(f"set {key}: is given as a xacro argument, too; keep one")
+            raise InputError(f"set {key}: is also given as a xacro argument. Keep one.")
         else:
             arguments[name] = value
     return arguments, left
@@ -52,7 +52,7 @@ def check_names(model: Model, parameters: Iterable[str]) -> None:
         owner = key.rpartition(".")[0]
         if len(kinds.get(owner, ())) > 1:
             raise InputError(
-                f"set {key}: '{owner}' is the name of {' and of '.join(kinds[owner])}; rename one"
+                f"set {key}: '{owner}' is the name of {' and of '.join(kinds[owner])}. Rename one."
             )
 
 
@@ -79,7 +79,7 @@ def apply_link_values(model: Model, parameters: Mapping[str, str]) -> Tuple[Mode
     for key, value in parameters.items():
         owner = key.rpartition(".")[0]
         if owner == XACRO:
-            raise InputError(f"set {key}: the model is read already; give it to its reader")
+            raise InputError(f"set {key}: the model has already been read. Give it to read_model.")
         is_of_link = _is_special(key) and kinds.get(owner) == [_LINK]
         (of_links if is_of_link else left)[key] = value
     return (_change_values(model, of_links) if of_links else model), left
@@ -97,7 +97,7 @@ def _check_link_names(model: Model, parameters: Iterable[str]) -> None:
         ):
             near, known = suggest(name, list(_PLACES)), ", ".join(_PLACES)
             raise InputError(
-                f"set {key}: link '{owner}' has no value '{name}'{near}. Set one of {known}."
+                f"set {key}: link '{owner}' has no value '{name}'.{near} Set one of {known}."
             )
 
 
@@ -135,9 +135,9 @@ def _change_values(model: Model, values: Mapping[str, str]) -> Model:
     edits = []
     for key, value in values.items():
         if _core.parse_number(value) is None:
-            raise InputError(f"set {key}: '{value}' is not a finite number; write one")
+            raise InputError(f"set {key}: '{value}' is not a finite number. Write one.")
         if key not in places:
-            raise InputError(f"set {key}: the link has no <inertial> that says so; write one")
+            raise InputError(f"set {key}: the link has no such <inertial>. Write one.")
         edits.append((*places[key].span, value.encode()))
     text = document.text.encode()
     for begin, end, new in sorted(edits, reverse=True):

@@ -74,7 +74,7 @@ def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
             known = sorted(expansion.asked)
             near = suggest(name, known)
             remedy = f"Use one of {', '.join(known)}." if known else "Leave it out."
-            raise InputError(f"{path}: has no xacro argument '{name}'{near}. {remedy}")
+            raise InputError(f"{path}: has no xacro argument '{name}'.{near} {remedy}")
     return expansion.lines
 
 
@@ -123,7 +123,7 @@ def _blame_argument(path: str, arguments: Mapping[str, str], what: str) -> str:
         except Exception:  # it is not this one, or not it alone
             continue
         given = " ".join(value.split())
-        return f"xacro argument '{name}' is '{given}': {what}; its default is '{default}'"
+        return f"xacro argument '{name}' is '{given}' (default '{default}'): {what}"
     return what
 
 
@@ -187,7 +187,7 @@ def _replace_hooks(arguments: _Arguments, outside: Dependencies) -> Iterator[Non
             outside.may_be_kept = False
         if command == "arg" and len(words) == 1 and words[0] not in arguments:
             raise xacro.XacroException(
-                f"undefined xacro argument '{words[0]}'; declare it: "
+                f"undefined xacro argument '{words[0]}'. Declare it: "
                 f'<xacro:arg name="{words[0]}" default="..."/>'
             )
         return str(old_extension(text))
@@ -233,7 +233,7 @@ def _find_package(name: str) -> str:
         return str(rospkg.RosPack().get_path(name))
     except rospkg.ResourceNotFound:
         raise xacro.XacroException(
-            f"package '{name}' not found; add the folder that holds it to ROS_PACKAGE_PATH"
+            f"package '{name}' not found. Add the folder that contains it to ROS_PACKAGE_PATH."
         ) from None
 
 

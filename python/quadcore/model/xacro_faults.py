@@ -22,7 +22,7 @@ def explain_error(error: BaseException) -> str:
     if isinstance(cause, KeyError):
         return _explain_key_error(cause, str(getattr(inner, "suffix", "")))
     text = str(cause if "<class" in str(error) else error)
-    hint = "; define it with <xacro:property>" if isinstance(cause, NameError) else ""
+    hint = ". Define it with <xacro:property>." if isinstance(cause, NameError) else ""
     return (" ".join(text.split()) or type(error).__name__) + hint
 
 
@@ -30,8 +30,8 @@ def _explain_key_error(error: KeyError, suffix: str) -> str:
     found = _EXPRESSION.search(suffix)
     expression = " ".join(found[1].split()) if found else ""
     keys = _list_keys(expression)
-    instead = f"write one of {', '.join(keys)}" if keys else f"mend '{expression or error}'"
-    return f"there is no {' '.join(str(error).split())}; {instead}"
+    remedy = f"Use one of {', '.join(keys)}." if keys else f"Correct '{expression or error}'."
+    return f"key {' '.join(str(error).split())} does not exist. {remedy}"
 
 
 def _list_keys(expression: str) -> List[str]:

@@ -213,11 +213,11 @@ class BatchSimulation(_core.Batch):
             If an argument is wrong. Nothing moves.
         """
         if not isinstance(log, Iterable):
-            raise InputError(f"log is {shorten(log)}; give a list of numbers of vehicles")
+            raise InputError(f"log is {shorten(log)}. Give a list of vehicle numbers.")
         chosen = [check_whole(vehicle, "log") for vehicle in log]
         for vehicle in chosen:
             if vehicle >= self.n:
-                raise InputError(f"log names vehicle {vehicle}; there are 0 to {self.n - 1}")
+                raise InputError(f"log names vehicle {vehicle}. Use 0 to {self.n - 1}.")
         total = count_steps(duration, self.dt)
         if check_whole(log_every, "log_every") < 1 or chosen:
             check_log_length(duration, self.dt, log_every)

@@ -98,7 +98,9 @@ def explain_refusal(error: InputError, given: Sequence[Any], n: int) -> InputErr
                 for row in rows
                 for text in (format_value(row), _format_argument(row))
             ):
-                return InputError(f"{error}; a value for each vehicle is an array of shape ({n},)")
+                return InputError(
+                    f"{error} For a value per vehicle, give an array of shape ({n},)."
+                )
     return error
 
 
@@ -120,12 +122,13 @@ def _split_values(n: int, parameters: Mapping[str, Any]) -> List[Dict[str, Any]]
         shape: Tuple[int, ...] = value.shape if isinstance(value, np.ndarray) else ()
         if len(shape) == 1 and len(value) != n:
             raise InputError(
-                f"set {key}: {len(value)} values for {n} vehicles; give one for each, or one number"
+                f"set {key}: {len(value)} values for {n} vehicles. Give one for each, or one "
+                "number."
             )
         if len(shape) > 1 and (len(shape) > 2 or len(value) != n or shape[1] == 1):
             raise InputError(
-                f"set {key}: an array of shape {shape} for {n} vehicles; give one of ({n},), or of "
-                f"({n}, k) where a value is a row of k numbers"
+                f"set {key}: an array of shape {shape} for {n} vehicles. Give shape ({n},), or "
+                f"({n}, k) where a value is a row of k numbers."
             )
     return [
         {

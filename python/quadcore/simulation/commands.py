@@ -43,12 +43,12 @@ def check_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
         raise InputError(f"commands: not a table of numbers: {error}") from error
     if given.dtype.kind not in "iuf" or isinstance(commands, np.ma.MaskedArray):
         kind = "masked" if isinstance(commands, np.ma.MaskedArray) else given.dtype
-        raise InputError(f"commands: not a table of real numbers: {kind}; give floats, all of them")
+        raise InputError(f"commands: not a table of real numbers: {kind}. Give floats.")
     table = np.ascontiguousarray(given, dtype=float)
     if table.ndim != 2 or table.shape[1] != 1 + rotor_count:
         raise InputError(
-            f"commands: an array of shape {table.shape}; this model with {rotor_count} rotors "
-            f"takes (rows, {1 + rotor_count}): {','.join(_list_columns(rotor_count))}"
+            f"commands: an array of shape {table.shape}, but the model has {rotor_count} "
+            f"rotors. Give (rows, {1 + rotor_count}): {','.join(_list_columns(rotor_count))}."
         )
     counted = " (rows count from 0, as numpy's do)"
     _check(table, lambda row: f"commands: row {row}", "commands", counted)

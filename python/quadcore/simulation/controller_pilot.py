@@ -59,7 +59,7 @@ class ControllerPilot(Pilot):
         inner_loop = getattr(controller, "inner_loop", None)
         if not (inner_loop is None or isinstance(inner_loop, InnerLoop)):
             raise InputError(
-                f"controller: its inner_loop is {shorten(inner_loop)}; give a quadcore.InnerLoop"
+                f"controller: its inner_loop is {shorten(inner_loop)}. Give a quadcore.InnerLoop."
             )
         self._inner_loop = InnerLoop() if inner_loop is None else inner_loop
         self.columns = _COLUMNS if reference is not None else ()
@@ -75,8 +75,8 @@ class ControllerPilot(Pilot):
         sensed = simulation.topics.get(SENSED)
         if sensed is None or sensed.kind != "odometry":
             raise InputError(
-                f"controller: no plugin publishes odometry on topic '{SENSED}'; "
-                "add libodometry_plugin.so"
+                f"controller: no plugin publishes odometry on topic '{SENSED}'. "
+                "Add libodometry_plugin.so."
             )
 
     @property

@@ -77,7 +77,7 @@ def check_engine_and_step(engine: EngineName, dt: object) -> Tuple[EngineName, O
     """Check the type of an engine name, and a step [s] or None."""
     known = ", ".join(name for name, _ in engines())
     if not (isinstance(engine, str) and engine.isprintable()):
-        raise InputError(f"engine is {shorten(engine)}; give one of {known}")
+        raise InputError(f"engine is {shorten(engine)}. Give one of {known}.")
     if engine in _ADDED:
         raise InputError(
             f"Engine '{engine}' is available in quadcore.FlightPlan, in evaluate, and in the "
@@ -90,4 +90,4 @@ def check_engine_and_step(engine: EngineName, dt: object) -> Tuple[EngineName, O
             return engine, float(dt)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         pass
-    raise InputError(f"dt is {shorten(dt)}; give the length of a step in s")
+    raise InputError(f"dt is {shorten(dt)}. Give the length of a step in s.")

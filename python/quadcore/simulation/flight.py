@@ -258,12 +258,12 @@ def count_steps(duration: float, dt: float) -> int:
     """Count the steps that end within a duration; raises `InputError` if it is not valid."""
     if not (isinstance(duration, Real) and 0 <= duration <= _LONGEST):
         raise _core.InputError(
-            f"duration is {shorten(duration)}; give seconds, from 0 to {_LONGEST:g}"
+            f"duration is {shorten(duration)}. Give seconds, from 0 to {_LONGEST:g}."
         )
     steps = math.floor(duration / dt + 1e-6)
     if steps == 0 and duration > 0:
         raise _core.InputError(
-            f"duration is {duration:g} s, less than a step of {dt:g} s; nothing would fly"
+            f"duration is {duration:g} s, less than a step of {dt:g} s. Give more."
         )
     return steps
 
@@ -272,7 +272,7 @@ def _check_log_every(log_every: object) -> int:
     """Return the number of steps between rows; raises `InputError` if it is not valid."""
     is_whole = isinstance(log_every, (int, np.integer)) and not isinstance(log_every, bool)
     if not is_whole or not 1 <= log_every < 2**63:  # type: ignore[operator]
-        raise _core.InputError(f"log_every is {shorten(log_every)}; give a whole number >= 1")
+        raise _core.InputError(f"log_every is {shorten(log_every)}. Give a whole number >= 1.")
     return int(log_every)  # type: ignore[call-overload,no-any-return]
 
 
@@ -281,5 +281,5 @@ def check_log_length(duration: float, dt: float, log_every: int) -> None:
     steps = count_steps(duration, dt)
     if _check_log_every(log_every) > steps:
         raise _core.InputError(
-            f"log_every is {log_every} but the flight has {steps} steps; log more often"
+            f"log_every is {log_every} but the flight has {steps} steps. Log more often."
         )

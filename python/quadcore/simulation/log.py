@@ -62,7 +62,7 @@ class Log(Trajectory):
         Parameters
         ----------
         path : str or path
-            ``.csv``, ``.mat`` or ``.bag`` file of quadcore, or the folder of a ROS 2 bag. Recordings
+            ``.csv``, ``.mat`` or ``.bag`` file of quadcore, or the folder of a ROS 2 bag. Others
             are a ULog, a Crazyflie micro-SD log, a blackbox log, a CSV file or a bag with other
             columns; also compressed by gzip.
         mapping : str or path, optional
@@ -112,7 +112,9 @@ class Log(Trajectory):
         named = self.to_dict()
         if not isinstance(column, str) or column not in named:
             near = suggest(str(column), list(named))
-            raise InputError(f"log[{column!r}]: no such column{near}; log.to_dict() has them all")
+            raise InputError(
+                f"log[{column!r}] does not exist.{near} Use a column of log.to_dict()."
+            )
         return named[column]
 
     def __contains__(self, column: object) -> bool:

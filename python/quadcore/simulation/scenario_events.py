@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import yaml
 
 from .._core import InputError, parse_number
+from ..support.parameters import suggest
 from ..support.yaml_nodes import find_line, read_pairs, read_scalar
 
 
@@ -71,8 +71,7 @@ class Event(NamedTuple):
         """Raise `InputError` if the vehicle has no such rotor."""
         if self.rotor is not None and self.rotor not in range(1, rotors + 1):
             raise InputError(
-                f"{file}:{self.line}: there is no rotor {self.rotor:g}; they count from 1 to "
-                f"{rotors}"
+                f"{file}:{self.line}: rotor {self.rotor:g} does not exist. Use 1 to {rotors}."
             )
 
 
@@ -101,7 +100,7 @@ def read_events(file: str, node: yaml.Node) -> Sequence[Event]:
             if (other.time, other.thing) == (event.time, event.thing):
                 raise InputError(
                     f"{file}:{event.line}: a second event on {event.thing} at {event.time:g} s, "
-                    f"the first in line {other.line}; keep one"
+                    f"the first in line {other.line}. Keep one."
                 )
         events.append(event)
     return sorted(events, key=lambda event: event.time)
@@ -113,7 +112,7 @@ def _read_event(file: str, node: yaml.Node, what: str) -> Event:
     named = [name for name in given if name in KINDS]
     if len(named) != 1:
         several = " and ".join(named) or _name_unknown(given)
-        raise InputError(f"{where}: an event is {several}; write one of {', '.join(KINDS)}")
+        raise InputError(f"{where}: an event is {several}. Write one of {', '.join(KINDS)}.")
     (name,) = named
     kind = KINDS[name]
     wanted = {name: (kind.numbers, ""), "at": (1, ""), **kind.others}
@@ -122,10 +121,10 @@ def _read_event(file: str, node: yaml.Node, what: str) -> Event:
     values = {}
     for key, (node_of_key, _) in given.items():
         if key not in wanted:
-            nearest = difflib.get_close_matches(key, wanted, 1, 0.0)[0]
+            known = list(wanted)
             raise InputError(
-                f"{file}:{find_line(node_of_key)}: {name} has no '{key}'; "
-                f"the nearest is '{nearest}'"
+                f"{file}:{find_line(node_of_key)}: {name} has no '{key}'.{suggest(key, known)} "
+                f"Write {', '.join(known)}."
             )
     for key, (count, default) in wanted.items():
         if key in given:
@@ -133,12 +132,14 @@ def _read_event(file: str, node: yaml.Node, what: str) -> Event:
         elif default:
             values[key] = default
         else:
-            raise InputError(f"{where}: {name} lacks '{key}'; write it")
+            raise InputError(f"{where}: {name} lacks '{key}'. Write it.")
     time = parse_number(values["at"])
     assert time is not None  # it was read as one
     if time < 0:
         at = find_line(given["at"][0])
-        raise InputError(f"{file}:{at}: an event at {time:g} s is before the start; write at: >= 0")
+        raise InputError(
+            f"{file}:{at}: an event at {time:g} s is before the start. Write at: >= 0."
+        )
     plugin = values["plugin"] if kind.numbers else values[name]
     rotor = parse_number(values[name]) if kind.numbers == 1 else None
     thing = f"rotor {values[name]}" if kind.numbers == 1 else f"'{plugin}'"
@@ -164,5 +165,5 @@ def _read_numbers(file: str, key: str, node: yaml.Node, count: int) -> str:
     values = [parse_number(text) for text in texts]
     if len(values) != count or any(v is None or not math.isfinite(v) for v in values):
         form = {0: "a name", 1: "a number"}.get(count, f"a list of {count} numbers")
-        raise InputError(f"{file}:{find_line(node)}: {key} is {' '.join(texts)}; write {form}")
+        raise InputError(f"{file}:{find_line(node)}: {key} is {' '.join(texts)}. Write {form}.")
     return " ".join(texts)

@@ -190,9 +190,9 @@ def _find(name: str) -> Path:
     if Path(name).exists():
         check_regular(Path(name))
     names = [NONE, *known]
-    near = suggest(name, names)
     raise InputError(
-        f"{name}: no such file, and no shipped scenario of that name ({', '.join(names)}){near}"
+        f"{name}: neither a file nor a shipped scenario.{suggest(name, names)} Name a file, or one "
+        f"of {', '.join(names)}."
     )
 
 
@@ -201,7 +201,7 @@ def _read_sections(file: str, node: yaml.Node) -> Dict[str, yaml.Node]:
     for key, value in read_pairs(file, node, _WRITE):
         if key.value not in ("plugins", "events"):
             raise InputError(
-                f"{file}:{find_line(key)}: a scenario has no '{key.value}'; write {_WRITE}"
+                f"{file}:{find_line(key)}: a scenario has no '{key.value}'. Write {_WRITE}."
             )
         found[key.value] = value
     return found
@@ -215,7 +215,9 @@ def _read_plugin(file: str, key: yaml.ScalarNode, node: yaml.Node) -> PluginEntr
     library = key.value
     for tag in tags:
         if not re.fullmatch(r"[A-Za-z_][\w.-]*", tag.name):
-            raise InputError(f"{file}:{tag.line}: '{tag.name}' is no name of a tag; write one")
+            raise InputError(
+                f"{file}:{tag.line}: '{tag.name}' is not the name of a tag. Write one."
+            )
         if tag.name == _LIBRARY:
             library = tag.value
     if not library.endswith(".so"):
@@ -238,7 +240,7 @@ def _add_event(file: str, addition: PluginEntry, event: Event) -> None:
         if not event.may_repeat:
             raise InputError(
                 f"{file}:{event.line}: <{tag.name}> of '{addition.name}' is given twice, first in "
-                f"line {tag.line}; keep one"
+                f"line {tag.line}. Keep one."
             )
         addition.tags[i] = tag._replace(value=f"{tag.value} {event.row}")
         return

@@ -252,9 +252,9 @@ class Simulation(_core.Simulation):
             If the flight fails, or the controller returns no valid command.
         """
         if commands is not None and controller is not None:
-            raise _core.InputError("a flight takes commands or a controller; give one of them")
+            raise _core.InputError("a flight takes commands or a controller. Give one of them.")
         if reference is not None and controller is None:
-            raise _core.InputError("a reference needs a controller that follows it; give one")
+            raise _core.InputError("a reference needs a controller that follows it. Give one.")
         if on_reference:
             reference = self._start_on(controller, reference)
         names = check_names_argument("topics", topics)
@@ -298,7 +298,7 @@ class Simulation(_core.Simulation):
     def _start_on(self, controller: Any, reference: Any) -> Any:
         """Set the state of a vehicle on a reference, and return the reference."""
         if reference is None:
-            raise _core.InputError("on_reference needs a reference to begin on; give one")
+            raise _core.InputError("on_reference needs a reference to begin on. Give one.")
         if isinstance(reference, str):
             reference = references.parse(reference)
         spins = controller.spins if isinstance(controller, BuiltInController) else ()
@@ -323,7 +323,7 @@ def _format_values(values: np.ndarray) -> str:
 def _order_fields(topic: str, values: Mapping[str, float], fields: Sequence[str]) -> list[float]:
     if set(values) != set(fields):
         raise _core.InputError(
-            f"publish: topic '{topic}': fields {', '.join(map(str, values)) or 'none'}; "
-            f"give {', '.join(fields)}"
+            f"publish: topic '{topic}': fields {', '.join(map(str, values)) or 'none'}. "
+            f"Give {', '.join(fields)}."
         )
     return [values[field] for field in fields]

@@ -93,7 +93,7 @@ class LiveState:
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(
-            f"state.{name} is read-only; change a state.copy() and give it to set_state()"
+            f"state.{name} is read-only. Change a state.copy() and give it to set_state()."
         )
 
     @property

@@ -32,8 +32,8 @@ def _check_table(table: Any) -> FloatArray:
         return table
     given = f"an array {table.shape}" if isinstance(table, np.ndarray) else shorten(table)
     raise InputError(
-        f"table: give an array (rows, {_STATE_SIZE} + rotors), not {given}; "
-        "files are read by Log.of_file"
+        f"table is {given}. Give an array (rows, {_STATE_SIZE} + rotors), or read a file with "
+        "Log.of_file."
     )
 
 
@@ -42,8 +42,10 @@ class Wrenches(Dict[str, np.ndarray]):
 
     def __missing__(self, name: str) -> FloatArray:
         if self:
-            raise InputError(f"log.wrenches: '{name}' is none of {', '.join(self)}; name one")
-        raise InputError("log.wrenches: the log holds none; ask for them: wrenches=True")
+            raise InputError(
+                f"log.wrenches: '{name}' does not exist. Use one of {', '.join(self)}."
+            )
+        raise InputError("log.wrenches: the log has none. Run the flight with wrenches=True.")
 
 
 class Trajectory:

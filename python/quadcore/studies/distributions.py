@@ -123,7 +123,7 @@ def _draw_sobol(dimensions: int, count: int, seed: int) -> np.ndarray:
 def _draw_saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
     _check_power("saltelli", count)
     if count < 2:
-        raise InputError("samples is 1; the design saltelli requires more. Give at least 2.")
+        raise InputError("samples is 1, but the design saltelli requires more. Give at least 2.")
     with require_package("design saltelli", "SALib", "sweep"):
         from SALib.sample import sobol
     points: np.ndarray = sobol.sample(
@@ -196,7 +196,7 @@ def _check_power(design: str, count: int) -> None:
     if count & (count - 1):
         below = 1 << (count.bit_length() - 1)
         raise InputError(
-            f"samples is {count}; design {design} requires a power of two. Give {below} or "
+            f"samples is {count}, but design {design} requires a power of two. Give {below} or "
             f"{2 * below}."
         )
 

@@ -34,11 +34,11 @@ def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
         if kind is None:
             near = suggest(name, [*kinds, *OPTIONS])
             raise InputError(
-                f"there is no option '{name}'{near}; besides those of help() there are "
-                f"{', '.join(OPTIONS)}"
+                f"option '{name}' does not exist.{near} Use those of help(), or one of "
+                f"{', '.join(OPTIONS)}."
             )
         if not kind[0](value):
-            raise InputError(f"{name} is {shorten(value)}; give {kind[1]}")
+            raise InputError(f"{name} is {shorten(value)}. Give {kind[1]}.")
 
 
 def or_none(kind: Kind) -> Kind:

@@ -17,15 +17,15 @@ def find_remedy(message: str) -> str:
     file, name, version = missing.groups()
     package = f"{name}{'-' if name[-1].isdigit() else ''}{version}"
     return (
-        f"quadcore was built with {file}, which is not there; install it (Debian, Ubuntu: "
-        f"apt-get install {package}), or build quadcore anew"
+        f"quadcore was built with {file}, which is missing. Install it (Debian, Ubuntu: "
+        f"apt-get install {package}), or rebuild quadcore."
     )
 
 
 try:
     from .. import _core  # noqa: F401
 except ImportError as error:
-    said = find_remedy(str(error))
-    if not said:
+    remedy = find_remedy(str(error))
+    if not remedy:
         raise
-    raise ImportError(said) from None
+    raise ImportError(remedy) from None

@@ -30,5 +30,5 @@ def require_package(what: str, package: str, extra: str) -> Iterator[None]:
         yield
     except ImportError:
         raise InputError(
-            f"{what} needs the package {package}; install it: pip install 'quadcore[{extra}]'"
+            f"{what} requires the package {package}. Install it: pip install 'quadcore[{extra}]'"
         ) from None

@@ -167,9 +167,9 @@ def check_writable(path: Path) -> None:
     """Raise `InputError` if a file cannot be written; an older file stays."""
     try:
         if path.is_dir():
-            raise InputError(f"{path}: is a folder; name a file in it")
+            raise InputError(f"{path}: is a folder. Name a file in it.")
         if not path.parent.is_dir():
-            raise InputError(f"{path}: there is no folder {path.parent}; create it first")
+            raise InputError(f"{path}: folder {path.parent} does not exist. Create it first.")
         target = Path(os.path.realpath(str(path)))
         if not _is_replaceable(target):
             return

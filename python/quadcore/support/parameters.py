@@ -14,7 +14,7 @@ def check_values(who: str, given: Mapping[str, Any]) -> Dict[str, float]:
     """Return parameters as numbers; the core checks their names and ranges."""
     for name, value in given.items():
         if not isinstance(value, (bool, Real)):
-            raise _core.InputError(f"{who}: '{name}' is {value!r}; give a number or a flag")
+            raise _core.InputError(f"{who}: '{name}' is {value!r}. Give a number or a flag.")
     return {name: float(value) for name, value in given.items()}
 
 
@@ -34,10 +34,10 @@ def read_values(who: str, text: str) -> Dict[str, float]:
         key, _, value = part.partition("=")
         number = _FLAGS.get(value, _core.parse_number(value))
         if key in read:
-            raise _core.InputError(f"{who}: '{key}' is given twice; keep one")
+            raise _core.InputError(f"{who}: '{key}' is given twice. Keep one.")
         if number is None or not key:
             raise _core.InputError(
-                f"{who}: '{part}' is not one KEY=NUMBER; write NAME:KEY=NUMBER,..."
+                f"{who}: '{part}' is not of the form KEY=NUMBER. Write NAME:KEY=NUMBER,..."
             )
         read[key] = number
     return read
@@ -80,7 +80,10 @@ _CLOSE = 0.7  # of difflib's measure, from 0 to 1
 
 
 def suggest(name: str, known: Sequence[str]) -> str:
-    """Suggest the closest known name, if one is close; dashes of options do not count."""
+    """Return " Did you mean 'x'?" for the closest known name, or "" if none is close.
+
+    Leading dashes of options do not count.
+    """
     bare = {each.lstrip("-"): each for each in known}
     near = difflib.get_close_matches(name.lstrip("-"), bare, 1, _CLOSE)
-    return f" (did you mean '{bare[near[0]]}')" if near else ""
+    return f" Did you mean '{bare[near[0]]}'?" if near else ""

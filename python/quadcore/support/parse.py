@@ -28,7 +28,7 @@ def several(names: Sequence[str]) -> Callable[[str], list[str]]:
         for name in text.split(","):
             if name not in names:
                 raise argparse.ArgumentTypeError(
-                    f"'{name}' is none of {', '.join(names)}; write some of them, as A,B"
+                    f"'{name}' does not exist. Choose from {', '.join(names)}"
                 )
         return list(dict.fromkeys(text.split(",")))
 
@@ -53,7 +53,9 @@ def several_calls(text: str) -> list[str]:
 
 def _named(text: str, found: list[str]) -> list[str]:
     if not all(found):
-        raise argparse.ArgumentTypeError(f"'{text}' has an empty name; write names, commas between")
+        raise argparse.ArgumentTypeError(
+            f"'{text}' has an empty name. Write names with commas between them"
+        )
     return found
 
 

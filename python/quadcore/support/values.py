@@ -27,7 +27,7 @@ def check_whole(seed: object, name: str = "seed", bits: int = 64) -> int:
     is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
     if not is_whole or not 0 <= seed < 2**bits:  # type: ignore[operator]
         raise _core.InputError(
-            f"{name} is {shorten(seed)}; give a whole number from 0 to 2^{bits} - 1"
+            f"{name} is {shorten(seed)}. Give a whole number from 0 to 2^{bits} - 1."
         )
     return int(seed)  # type: ignore[call-overload,no-any-return]
 
@@ -56,7 +56,7 @@ def check_pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
         given = []
     if len(given) not in (3, 6):
         raise _core.InputError(
-            f"spawn is {shorten(spawn)}; give x, y, z[, roll, pitch, yaw] in m and rad"
+            f"spawn is {shorten(spawn)}. Give x, y, z[, roll, pitch, yaw] in m and rad."
         )
     return (*given, *[0.0] * (6 - len(given)))
 
@@ -78,8 +78,8 @@ def check_poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
         given = np.empty((0, 0))
     if given.shape not in {(rows, width) for rows in (1, n) for width in (3, 6)}:
         raise _core.InputError(
-            f"spawn holds no poses of {n} vehicles; give x, y, z[, roll, pitch, yaw] in m "
-            "and rad, for each or once for all"
+            f"spawn does not contain poses of {n} vehicles. Give x, y, z[, roll, pitch, yaw] in m "
+            "and rad, for each or once for all."
         )
     padded = np.zeros((n, 6))
     padded[:, : given.shape[1]] = given
@@ -96,7 +96,9 @@ def check_seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
     except ValueError:  # rows of several lengths
         given = np.empty((0, 0))
     if given.shape != (n,):
-        raise _core.InputError(f"seed holds no {n} whole numbers; give one for each, or one")
+        raise _core.InputError(
+            f"seed does not contain {n} whole numbers. Give one per vehicle, or one."
+        )
     if given.dtype == np.uint64:
         return given
     return np.array([check_whole(number) for number in given], np.uint64)

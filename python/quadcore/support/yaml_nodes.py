@@ -35,9 +35,9 @@ def read_pairs(
     names = set()
     for key, value in node.value:
         if not isinstance(key, yaml.ScalarNode):
-            raise InputError(f"{path}:{find_line(key)}: a key is no text; write {what}")
+            raise InputError(f"{path}:{find_line(key)}: a key is not text. Write {what}.")
         if key.value in names:
-            raise InputError(f"{path}:{find_line(key)}: {key.value} is given twice; keep one")
+            raise InputError(f"{path}:{find_line(key)}: {key.value} is given twice. Keep one.")
         names.add(key.value)
         yield key, value
 
@@ -47,9 +47,9 @@ def read_scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
     where = f"{path}:{find_line(node)}"
     if not isinstance(node, yaml.ScalarNode):
         kind = "a list" if isinstance(node, yaml.SequenceNode) else "a mapping"
-        raise InputError(f"{where}: {name} is {kind} here; write a value, or a list of values")
+        raise InputError(f"{where}: {name} is {kind} here. Write a value, or a list of values.")
     if node.tag == f"{_SCALAR}null":
-        raise InputError(f"{where}: {name} is empty; write a value, or leave the line out")
+        raise InputError(f"{where}: {name} is empty. Write a value, or remove the line.")
     if node.tag == f"{_SCALAR}bool":  # yes and on are others
         return "true" if yaml.SafeLoader.bool_values[node.value.lower()] else "false"
     return str(node.value)

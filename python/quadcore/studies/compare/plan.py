@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from contextlib import suppress
 from pathlib import Path
@@ -16,6 +15,7 @@ from ...simulation.engines import list_engines
 from ...simulation.flight import check_log_length
 from ...simulation.log import Log
 from ...simulation.simulation import Simulation
+from ...support.parameters import suggest
 from ..axes import OF_CONTROLLER, WHOLE, Axis, Values
 from ..cases import Case, Cases, make_scenario_axis
 from ..control_setup import ControlSetup
@@ -64,7 +64,10 @@ class Plan(Cases):
         known = [name for name, _ in list_engines()]
         for name in design.values("engine"):
             if name not in known:
-                raise InputError(f"vary engine: there is no {_nearest(name, known)}")
+                raise InputError(
+                    f"vary engine: '{name}' does not exist.{suggest(name, known)} "
+                    f"Use some of {', '.join(known)}."
+                )
         super().__init__(design, control, models, [engine], options, wrenches, LARGEST)
         built = self._build_models()
         first = next(iter(built.values()), None)
@@ -132,11 +135,11 @@ class Plan(Cases):
                 for tag in axis.tags:
                     if tag not in known and not tag.startswith((f"{XACRO}.", OF_CONTROLLER)):
                         raise InputError(
-                            f"vary {tag}: model {simulation.model.name} has no "
-                            f"{_nearest(tag, known)}"
+                            f"vary {tag}: model {simulation.model.name} has no '{tag}'."
+                            f"{suggest(tag, known)} List the tags with quadcore info."
                         )
                     if tag in taken:
-                        raise InputError(f"vary {tag}: it is set as well; keep one")
+                        raise InputError(f"vary {tag}: it is also set. Keep one.")
 
     def _check_guidance(self, built: Mapping[int, Simulation]) -> None:
         """Raise `InputError` if the controller can start on none of the models."""
@@ -174,7 +177,3 @@ def _shorten(value: str) -> str:
         return f"{float(value):.4g}" if len(value) > 8 else value
     except ValueError:
         return value
-
-
-def _nearest(name: str, known: Sequence[str]) -> str:
-    return f"'{name}'; the nearest is '{difflib.get_close_matches(name, known, 1, 0.0)[0]}'"

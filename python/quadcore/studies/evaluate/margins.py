@@ -187,8 +187,8 @@ def describe_omitted(model: str, lacking: Collection[str]) -> str:
         return ""
     verb = "is" if len(left_out) == 1 else "are"
     return (
-        f"margins: no tag of '{model}' scales its {' and its '.join(lacking)}; "
-        f"{' and '.join(left_out)} {verb} not searched"
+        f"margins: no tag of '{model}' scales its {' and its '.join(lacking)}. "
+        f"{' and '.join(left_out)} {verb} not searched."
     )
 
 

@@ -62,7 +62,8 @@ class Parameter:
         else:
             known = [*tags, *links, *fitted.arguments]
             raise InputError(
-                f"free {name}: model {model.name} has no such parameter{suggest(name, known)}"
+                f"free {name}: model {model.name} has no such parameter.{suggest(name, known)} "
+                "List the parameters with quadcore info."
             )
         value = parse_number(text)
         if value is None:

@@ -47,8 +47,8 @@ def _connect(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]
     def check() -> None:
         if client.status != "running":
             raise QuadcoreError(
-                f"{address}: the connection to the scheduler is lost. The completed rows are kept; "
-                "add --resume to continue."
+                f"{address}: the connection to the scheduler is lost. The completed rows are kept. "
+                "Add --resume to continue."
             )
 
     try:

@@ -297,6 +297,6 @@ def _collect(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Uni
 def _describe_executor_failure(error: Exception) -> str:
     reason = " ".join(f"{type(error).__name__}: {error}".split())
     return (
-        f"the executor failed ({reason[:200]}). The completed rows are kept; add --resume to "
+        f"the executor failed ({reason[:200]}). The completed rows are kept. Add --resume to "
         "continue."
     )

@@ -84,18 +84,18 @@ def check(simulation: Simulation) -> None:
     """Raise `InputError` if a force acts on the vehicle that chapter 2 does not have."""
     if simulation.world.ground_plane:
         raise InputError(
-            f"engine {LAGRANGE}: the mathematical model has no contact, and the world a ground "
-            "plane; fly in a world without, such as empty"
+            f"engine {LAGRANGE}: the mathematical model has no contact, but the world has a ground "
+            "plane. Use a world without one, such as empty."
         )
     air = find_air_plugin(simulation)
     for plugin in simulation.plugins:
         if plugin.wrenches and plugin.name != air.name:
             raise InputError(
                 f"engine {LAGRANGE}: plugin '{plugin.name}' exerts {', '.join(plugin.wrenches)}, "
-                "which the mathematical model does not know; remove it, or fly another engine"
+                "which the mathematical model does not have. Remove it, or use another engine."
             )
         if Path(plugin.filename).name in _UNFELT:
             raise InputError(
-                f"engine {LAGRANGE}: plugin '{plugin.name}' ({plugin.filename}) would not be felt "
-                "by the mathematical model; remove it, or fly another engine"
+                f"engine {LAGRANGE}: plugin '{plugin.name}' ({plugin.filename}) has no effect "
+                "on the mathematical model. Remove it, or use another engine."
             )

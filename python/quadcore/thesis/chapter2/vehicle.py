@@ -86,9 +86,9 @@ class Vehicle:
         )
         integral = float(motor["ki"]) * (float(motor["iMax"]) - float(motor["iMin"]))
         if integral != 0 or float(motor["kd"]) != 0:
-            raise InputError("the mathematical model has proportional motors; set <ki>, <kd> to 0")
+            raise InputError("the mathematical model has proportional motors. Set <ki>, <kd> to 0.")
         if motor["commandTimeout"] != "off":
-            raise InputError("the mathematical model knows no <commandTimeout>; remove it")
+            raise InputError("the mathematical model has no <commandTimeout>. Remove it.")
         for plugin in (air, motor):
             if sorted(plugin["rotorJoints"].split()) != sorted(simulation.rotor_names):
                 raise InputError("the mathematical model needs every rotor in each <rotorJoints>")
@@ -181,8 +181,10 @@ def _find_only(found: Sequence[PluginInfo], such_as: str) -> PluginInfo:
     if len(found) == 1:
         return found[0]
     others = sorted({plugin.filename for plugin in found} - {such_as})
-    got = f"{len(found)}" if not others else f"{', '.join(others)}; take another engine"
-    raise InputError(f"the mathematical model needs one plugin {such_as}; got {got}")
+    got = f"{', '.join(others)}" if others else f"{len(found)}"
+    raise InputError(
+        f"the mathematical model needs one plugin {such_as}, but got {got}. Use another engine."
+    )
 
 
 def read_parameters(plugin: PluginInfo) -> Dict[str, str]:
@@ -199,8 +201,8 @@ class _Tags(Dict[str, str]):
 
     def __missing__(self, tag: str) -> str:
         raise InputError(
-            f"plugin '{self._plugin}' has no tag <{tag}>, which the mathematical model needs; fly "
-            "the shipped plugins"
+            f"plugin '{self._plugin}' has no tag <{tag}>, which the mathematical model needs. Use "
+            "the shipped plugins."
         )
 
 

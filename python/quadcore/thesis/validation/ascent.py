@@ -58,7 +58,7 @@ def make_ascent(vehicle: Vehicle) -> np.ndarray:
             turning = f"turn it about {about} as fast as the built-in flight does"
             raise InputError(
                 "rotors that spin + - + - cannot lift this vehicle and "
-                f"{turning if torque.any() else 'keep it level'}; give --commands"
+                f"{turning if torque.any() else 'keep it level'}. Give --commands."
             )
         rows.append([t, *(spin * np.sqrt(squares))])
     return np.array(rows)
@@ -72,5 +72,5 @@ def _check_authority(effect: np.ndarray) -> None:
         if not np.allclose(effect @ squares, alone, atol=1e-6):
             raise InputError(
                 f"rotors that spin + - + - give this vehicle no {what} without another force or "
-                "torque; the built-in flight lifts, tilts and turns: give --commands"
+                "torque, which the built-in flight needs. Give --commands."
             )

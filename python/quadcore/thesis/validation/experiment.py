@@ -107,7 +107,7 @@ class Experiment:
         }
         for key in asked["parameters"]:
             if key.endswith(".sim_slow"):
-                raise InputError(f"{key}: every flight has its own; give a list of sim_slow")
+                raise InputError(f"{key}: every flight has its own. Give a list of sim_slow.")
         plan = FlightPlan.of(**asked, engine="eigen", dt=dt, duration=duration, log_every=log_every)
         simulation = plan.simulation()
         check_log_length(duration, simulation.dt, log_every)
@@ -115,7 +115,7 @@ class Experiment:
         rotors = len(vehicle.arms)
         table = make_ascent(vehicle) if commands is None else check_commands(commands, rotors)
         if table[0, 0] > 0:
-            raise InputError(f"commands: the first row is for t = {table[0, 0]:g}; begin at t = 0")
+            raise InputError(f"commands: the first row is for t = {table[0, 0]:g}. Begin at t = 0.")
         air, motor = find_air_plugin(simulation).name, find_motor_plugin(simulation).name
         table = align_to_steps(table, simulation.dt)
         plan = replace(plan, dt=simulation.dt, commands=table)

@@ -68,12 +68,12 @@ def replay(
     log = Log.of_file(recording)
     vehicle = replace(plan, engine="eigen").simulation()
     if len(log) < 2:
-        raise InputError(f"{recording}: has one row; record a flight")
+        raise InputError(f"{recording}: has one row. Record a flight.")
     table = _read_commands(recording, commands, vehicle.rotor_count)
     if table[0, 0] > log.time[0] + 1e-9:
         raise InputError(
-            f"{recording}: begins at t = {log.time[0]:g}, the commands at {table[0, 0]:g}; give "
-            "those from its begin on"
+            f"{recording}: begins at t = {log.time[0]:g}, the commands at {table[0, 0]:g}. Give "
+            "those of the whole recording."
         )
     duration = float(log.time[-1] - log.time[0])
     start = _read_state(log, vehicle.state.copy())
@@ -97,7 +97,9 @@ def _read_commands(
         commands = read_record(recording, rotors).commands
     if commands is None:
         if Path(recording).suffix.lower() != ".bag":
-            raise InputError(f"{recording}: has no topic vel_cmd; give the --commands that flew")
+            raise InputError(
+                f"{recording}: has no topic vel_cmd. Give the --commands of the flight."
+            )
         commands = recording
     return check_commands(commands, rotors)
 
