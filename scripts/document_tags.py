@@ -131,8 +131,9 @@ def write_world_section() -> str:
     rows = ((f"`{e.name}`", e.unit, e.default, e.range, e.meaning) for e in _core.world_elements())
     return (
         "\n## Worlds\n\n"
-        "A world is an SDF file with one `<world>`. These elements are supported; any other is an\n"
-        "error that names it, unless it [has no effect on the motion](#seen-or-sensed).\n\n"
+        "A world is an SDF file with one `<world>`. These elements have an effect. Others are\n"
+        "ignored with a warning, as in Gazebo, unless their name resembles one of these. The page\n"
+        "on [worlds](worlds.md) explains how models, saved states and versions are read.\n\n"
         + table(("element", "unit", "default", "range", "meaning"), rows)
         + "\nBuilt-in worlds:\n\n"
         + table(("world", "content"), ((f"`{name}`", what) for name, what in WORLDS.items()))

@@ -122,6 +122,8 @@ most_levels, most_attributes : int
                     "Source file and line of each line of an expanded text; empty if the text is "
                     "the file itself.")
       .def_property_readonly_static("largest", [](const py::object&) { return Document::largest; })
+      .def_property_readonly_static("largest_world",
+                                    [](const py::object&) { return Document::largest_world; })
       .def_property_readonly_static("most_levels",
                                     [](const py::object&) { return Document::most_levels; })
       .def_property_readonly_static("most_attributes",
@@ -243,6 +245,10 @@ void bind_world(py::module_& m) {
           "Steps per second of wall-clock time for nodes in real time; 0: as fast as possible.")
       .def_property_readonly("ground_plane", get(&World::ground_plane),
                              "Whether there is a ground plane at z = 0.")
+      .def_property_readonly("start_time", get(&World::start_time),
+                             "Time at which a saved world starts (s).")
+      .def_property_readonly("ignored_models", get(&World::ignored_models),
+                             "Models that are ignored on request, though they may be obstacles.")
       .def_property_readonly("ignored_elements", get(&World::ignored_elements),
                              "Elements that the reader ignored.")
       .def_property_readonly("document", &get_document<World>,

@@ -33,6 +33,7 @@ class _Made(metaclass=_Bound):
 
 class Document(metaclass=_Bound):
     largest: int
+    largest_world: int
     most_levels: int
     most_attributes: int
     @property
@@ -148,6 +149,10 @@ class World(_Made):
     def real_time_update_rate(self) -> float: ...
     @property
     def ground_plane(self) -> bool: ...
+    @property
+    def start_time(self) -> float: ...
+    @property
+    def ignored_models(self) -> List[str]: ...
     @property
     def ignored_elements(self) -> IgnoredElements: ...
     @property

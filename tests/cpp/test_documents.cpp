@@ -112,6 +112,58 @@ TEST_CASE("a world says what it says, also in the thesis' spelling") {
   CHECK(world.ground_plane);
 }
 
+TEST_CASE("a world is read as Gazebo reads it, and what nothing feels is listed") {
+  const auto read = [](const std::string& version, const std::string& inside) {
+    return read_world(
+        {"a.world", "<sdf version='" + version + "'><world name='w'>" + inside + "</world></sdf>"});
+  };
+  const std::string physics = "<physics type='ode'><gravity>0 0 -1</gravity></physics>";
+  const std::string own = "<gravity>0 0 -2</gravity>";
+
+  // Gazebo moves the gravity of <physics> to the world when it converts SDF 1.5 and older.
+  for (const std::string version : {"1.2", "1.4", "1.5"}) {
+    CHECK(read(version, physics).gravity_W.z() == -1);
+  }
+  for (const std::string version : {"1.6", "1.7", "1.10"}) {
+    const World world = read(version, physics);
+    CHECK(world.gravity_W.z() == -9.8);
+    CHECK(contains(world.ignored_elements.warning(), "<gravity> in <physics> (a.world:1)"));
+  }
+  CHECK(read("1.5", physics + own).gravity_W.z() == -2);
+  CHECK(read("1.6", own + "<gravity>0 0 -3</gravity>").gravity_W.z() == -2);
+  CHECK(read("1.6", "<gravity xyz='0 0 -9.81'/>").gravity_W.z() == -9.8);
+  CHECK(read("1.5", "<physics><magnetic_field>1 2 3</magnetic_field></physics>").magnetic_field_W ==
+        Vector3d(1, 2, 3));
+
+  const auto step = [&](const std::string& version, const std::string& inside) {
+    return read(version, inside).max_step_size;
+  };
+  const std::string dt = "<physics><ode><solver><dt>0.002</dt></solver></ode></physics>";
+  CHECK(step("1.3", dt) == 0.002);
+  CHECK(step("1.6", dt) == 0.001);
+  const auto named = [](const std::string& attributes, const std::string& size) {
+    return "<physics " + attributes + "><max_step_size>" + size + "</max_step_size></physics>";
+  };
+  CHECK(step("1.6", named("name='a'", "0.002") + named("name='b'", "0.003")) == 0.002);
+  CHECK(step("1.6", named("name='a'", "0.002") + named("name='b' default='1'", "0.003")) == 0.003);
+  CHECK(step("1.6", named("", "0.002") + named("", "0.003")) == 0.003);
+
+  CHECK(read("1.6", "<wind/>").wind_W == Vector3d::Zero());
+  CHECK(read("1.6", "<wind><linear_velocity>1 0 0</linear_velocity></wind><wind/>").wind_W.x() ==
+        1);
+  const std::string rate = "<physics><real_time_update_rate>-1</real_time_update_rate></physics>";
+  CHECK(read("1.6", rate).real_time_update_rate == 0);
+
+  const std::string warning =
+      read("1.9",
+           "stray <joint/><physics update_rate='9'><ode><solver><precon_iters>3"
+           "</precon_iters></solver></ode></physics>")
+          .ignored_elements.warning();
+  CHECK(warning ==
+        "ignored, because it does not affect the motion: text in <world> (a.world:1), <joint> "
+        "(a.world:1), attribute update_rate of <physics> (a.world:1), <precon_iters> (a.world:1).");
+}
+
 TEST_CASE("a plane in line is the ground plane") {
   const World world = read_world({"a.world", R"(<sdf><world>
     <model name="ground"><static>1</static><link name="l">

@@ -127,9 +127,13 @@ def test_depth_that_is_only_seeming(toy):
         qc.Simulation("good.urdf").step()
 
 
-def test_a_document_of_many_megabytes(read):
-    for text in ('<{root} name="' + "x" * 20_000_000 + '"/>', "<{root}>" + " " * 20_000_000):
-        assert read(text) == "hostile.xml: the file exceeds the limit of 1 MB. Use a smaller file."
+@pytest.mark.parametrize("route", ROUTES)
+def test_a_document_of_many_megabytes(route):
+    reader, root = ROUTES[route]
+    limit = "10 MB" if root == b"sdf" else "1 MB"
+    for text in (b'< name="' + b"x" * 20_000_000 + b'"/>', b"<>" + b" " * 20_000_000):
+        message = reader(text.replace(b"<", b"<" + root, 1))
+        assert message == f"hostile.xml: the file exceeds the limit of {limit}. Use a smaller file."
 
 
 def test_a_number_of_half_a_megabyte(toy):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 from pathlib import Path
 
 import numpy as np
@@ -50,9 +51,26 @@ def test_what_is_foreign_in_a_world_is_left_out_on_request(flown, foreign, names
         assert flown(world=foreign, ignore=[name]).ignored == [name]
 
 
+@pytest.mark.parametrize(("model", "name"), [(HOUSE, "model://house"), (WALL, "wall")])
+def test_a_flight_without_an_obstacle_of_its_world_says_so(flown, capsys, model, name):
+    missing = f"the vehicle passes through {name}, because"
+    with pytest.warns(qc.QuadcoreWarning, match=missing):
+        simulation = flown(world=model, ignore=[name])
+    assert simulation.world.ignored_models == [name]
+    command = ["run", "toy.urdf", "--world", "toy.world", "--duration", "0.01", "--no-plots"]
+    assert main([*command, "--ignore", name, "--out", "out"]) == 0
+    shown = capsys.readouterr()
+    assert missing in shown.err
+    assert f"{name}: the vehicle passes through" in shown.out
+    assert f"{name}: the vehicle passes through" in Path("out/report.html").read_text()
+    assert json.loads(Path("out/run.json").read_text())["ignore"] == [name]
+    assert f"# ignored: {name}" in Path("out/log.csv").read_text()
+
+
 def test_what_a_world_makes_felt_is_refused_whatever_is_to_be_ignored(flown):
-    message = refusal(flown, world="<wind/>")
-    assert "a second <wind>" in message and "--ignore" not in message
+    solver = "<ode><solver><friction_model>cone_model</friction_model></solver></ode>"
+    message = refusal(flown, world=f'<physics default="1">{solver}</physics>')
+    assert "<friction_model> is 'cone_model'" in message and "--ignore" not in message
 
 
 @pytest.fixture

@@ -41,6 +41,8 @@ def summarize(
     }
     if is_slow(size):
         result["max_rotor_speed_commanded"] = float(fastest.speed / size)
+    if simulation.world.ignored_models:
+        result["ignored_models"] = simulation.world.ignored_models
     counts = [
         simulation.topic(name)["steps"]
         for name, topic in simulation.topics.items()
@@ -78,6 +80,9 @@ def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
         ("final roll, pitch, yaw", f"{_join_numbers(result['final_roll_pitch_yaw'], 4)} deg"),
         ("max rotor speed", f"{result['max_rotor_speed']:.3f} rad/s{commanded}"),
     ]
+    if "ignored_models" in result:
+        names = ", ".join(result["ignored_models"])
+        rows.append(("missing in the world", f"{names}: the vehicle passes through"))
     if "saturated_steps" in result:
         rows.append(("saturated steps", str(result["saturated_steps"])))
     if "controller" in result:

@@ -171,7 +171,8 @@ def load_world(world: str | None) -> Document:
     InputError
         If the world does not exist, or the XML is malformed.
     """
-    return _plain(_find("world", "empty" if world is None else world, "worlds"))
+    path = _find("world", "empty" if world is None else world, "worlds")
+    return _plain(path, Document.largest_world)
 
 
 def _find(kind: str, name: str, folder: str) -> Path:
@@ -192,7 +193,7 @@ def _find(kind: str, name: str, folder: str) -> Path:
     )
 
 
-def _plain(path: Path) -> Document:
-    text = xml_source.read(path)
+def _plain(path: Path, largest: int = Document.largest) -> Document:
+    text = xml_source.read(path, largest)
     xml_source.check(printable_name(path), text)
     return Document(printable_name(path), text)

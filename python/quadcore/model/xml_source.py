@@ -25,9 +25,9 @@ class Origin(NamedTuple):
         return f"{self.file}:{self.line}"
 
 
-def read(path: Path) -> str:
+def read(path: Path, largest: int = LARGEST) -> str:
     """Read the text of an XML file; raises `InputError` if this fails or the file is too large."""
-    return read_text(path, LARGEST)
+    return read_text(path, largest)
 
 
 def check(file: str, text: str) -> None:

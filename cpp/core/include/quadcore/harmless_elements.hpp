@@ -8,7 +8,8 @@
 /// \file
 /// Models made for Gazebo contain elements that quadcore does not model. Elements that are only
 /// seen or sensed are skipped with a warning. Elements that would change the motion are rejected.
-/// Unknown elements are rejected unless the user ignores them.
+/// Unknown elements of a model are rejected unless the user ignores them. Those of a world (SDF)
+/// are skipped, as Gazebo skips them, unless their name resembles a known one.
 
 namespace quadcore QUADCORE_EXPORT {
 
@@ -33,11 +34,15 @@ const std::vector<HarmlessElement>& list_harmless_elements();
 /// \param parent  the document's root and the parent element: "robot/link", "sdf/world"; or the
 /// root
 ///                alone.
-Handling decide_on_element(const std::string& parent, const std::string& element);
+/// \param is_similar  whether the element's name resembles one that the reader knows.
+Handling decide_on_element(const std::string& parent, const std::string& element, bool is_similar);
 /// Return how to handle a plugin tag without a quadcore module: `skip` if the module is known only
 /// to sense or publish. A module that pushes or controls must not be skipped silently.
 Handling decide_on_module(const std::string& filename);
 /// Return how to handle text between the elements in `parent`.
 Handling decide_on_text(const std::string& parent);
+/// Return how to handle an attribute of `parent` without a meaning, and a second element in
+/// `parent` where only the first has one.
+Handling decide_on_excess(const std::string& parent);
 
 }  // namespace quadcore

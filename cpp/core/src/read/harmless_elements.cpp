@@ -6,13 +6,16 @@
 namespace quadcore {
 namespace {
 
-/// Elements that other programs extend. Inside any other element, every child matters.
-const std::set<std::string> open_elements = {"robot",        "robot/link", "robot/joint",
-                                             "robot/gazebo", "sdf",        "sdf/world"};
+/// Elements of a model that other programs extend. Inside any other element, every child matters.
+const std::set<std::string> open_elements = {"robot", "robot/link", "robot/joint", "robot/gazebo"};
 
 /// Known elements that change the motion but are not modelled. Skipping them would simulate another
 /// vehicle.
-const std::set<std::pair<std::string, std::string>> physical_elements = {{"robot/joint", "mimic"}};
+const std::set<std::pair<std::string, std::string>> physical_elements = {
+    {"robot/joint", "mimic"}, {"sdf/world", "population"}};
+
+/// Whether an element is part of a world, in which Gazebo ignores what it does not know.
+bool is_in_world(const std::string& parent) { return parent.rfind("sdf", 0) == 0; }
 
 const char* const camera = "images";
 const char* const range = "distances";
@@ -22,6 +25,7 @@ const char* const joints = "joint angles and rates";
 const char* const field = "magnetic field";
 const char* const pressure = "air pressure";
 const char* const contact = "forces and contacts";
+const char* const score = "score of a task";
 const char* const connection = "connection of topics";
 
 }  // namespace
@@ -94,6 +98,16 @@ const std::vector<HarmlessElement>& list_harmless_elements() {
       {"libgazebo_ros_f3d.so", "", contact},
       {"libgazebo_ros_ft_sensor.so", "", contact},
       {"librotors_gazebo_bag_plugin.so", "", "recording of a bag file"},
+      {"libscan_dock_scoring_plugin.so", "", score},
+      {"libnavigation_scoring_plugin.so", "", score},
+      {"libstationkeeping_scoring_plugin.so", "", score},
+      {"libwayfinding_scoring_plugin.so", "", score},
+      {"libperception_scoring_plugin.so", "", score},
+      {"libContainPlugin.so", "", "whether a model is inside a region"},
+      {"libSimEventsPlugin.so", "", "events of the simulation"},
+      {"libusv_gazebo_wind_plugin.so", "", "wind on the boats that it names"},
+      {"libgazebo_ros.so", "", connection},
+      {"libgazebo_ros_api_plugin.so", "", connection},
       {"libgazebo_ros_state.so", "", connection},
       {"libgazebo_ros_init.so", "", connection},
       {"librotors_gazebo_ros_interface_plugin.so", "", connection},
@@ -101,13 +115,17 @@ const std::vector<HarmlessElement>& list_harmless_elements() {
   return table;
 }
 
-Handling decide_on_element(const std::string& parent, const std::string& element) {
+Handling decide_on_element(const std::string& parent, const std::string& element, bool is_similar) {
   const std::vector<HarmlessElement>& table = list_harmless_elements();
   const bool is_harmless = std::any_of(table.begin(), table.end(), [&](const HarmlessElement& row) {
     return !row.parent.empty() && row.parent == parent && row.name == element;
   });
   if (is_harmless) return Handling::skip;
-  const bool open = open_elements.count(parent) && !physical_elements.count({parent, element});
+  const bool is_physical = physical_elements.count({parent, element});
+  if (is_in_world(parent)) {
+    return is_physical || is_similar ? Handling::reject_unless_ignored : Handling::skip;
+  }
+  const bool open = open_elements.count(parent) && !is_physical;
   return open ? Handling::reject_unless_ignored : Handling::reject;
 }
 
@@ -120,8 +138,12 @@ Handling decide_on_module(const std::string& filename) {
 }
 
 Handling decide_on_text(const std::string& parent) {
-  // Text in deeper elements may be the remains of a damaged element.
-  return parent == "robot" ? Handling::skip : Handling::reject;
+  // Text in deeper elements of a model may be the remains of a damaged element.
+  return parent == "robot" || is_in_world(parent) ? Handling::skip : Handling::reject;
+}
+
+Handling decide_on_excess(const std::string& parent) {
+  return is_in_world(parent) ? Handling::skip : Handling::reject;
 }
 
 }  // namespace quadcore

@@ -4,9 +4,13 @@
 #include <cmath>
 #include <functional>
 
+#include "included_models.hpp"
 #include "quadcore/harmless_elements.hpp"
 #include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/model.hpp"
 #include "quadcore/text.hpp"
+#include "sdf_models.hpp"
+#include "sdf_version.hpp"
 #include "xml.hpp"
 
 namespace quadcore {
@@ -23,25 +27,17 @@ struct Row {
 };
 
 /// Elements that may repeat.
-const std::set<std::string> repeatable = {"include", "model", "plugin", "visual"};
+const std::set<std::string> repeatable = {"include", "model", "physics", "plugin"};
 
-/// Elements that their parent, if present, requires.
-constexpr const char* required[] = {"wind/linear_velocity",
-                                    "include/uri",
-                                    "model/static",
-                                    "model/link",
-                                    "model/link/collision",
-                                    "model/link/collision/geometry",
-                                    "model/link/collision/geometry/plane"};
+/// Elements that read_models() reads.
+const std::set<std::string> of_models = {"include", "model", "state"};
 
 /// Attributes allowed on an element with children.
 std::set<std::string> attributes_of(const std::string& element) {
   if (element == "sdf") return {"version"};
   if (element == "atmosphere") return {"type"};
   if (element == "physics" || element == "physics:ode") return {"name", "default", "type"};
-  if (element == "world" || element == "model" || element == "link" || element == "collision") {
-    return {"name"};
-  }
+  if (element == "world") return {"name"};
   return {};
 }
 
@@ -55,8 +51,14 @@ class WorldReader {
 
   World read() {
     xml_.only_attributes(xml_.root(), {"version"});
-    xml_.children(xml_.root(), {"world"});
-    read_children(xml_.required_child(xml_.root(), "world"), "");
+    const std::vector<const Element*> worlds = xml_.children(xml_.root(), {"world"}, {"world"});
+    if (worlds.size() > 1) {
+      xml_.fail(*worlds[1], "a second <world> in <sdf>. Keep one of them.");
+    }
+    const Element& world = xml_.required_child(xml_.root(), "world");
+    physics_ = choose_physics(world);
+    read_children(world, "");
+    read_models_of(world);
     return world_;
   }
 
@@ -76,6 +78,7 @@ class WorldReader {
     }
     for (const Element* child : xml_.children(element, names, repeatable)) {
       const std::string name = path + child->Name();
+      if (of_models.count(name)) continue;
       const auto row = std::find_if(rows_.begin(), rows_.end(),
                                     [&](const Row& r) { return r.spec.name == name; });
       if (row == rows_.end()) {
@@ -84,10 +87,21 @@ class WorldReader {
         row->read(*child);
       }
     }
-    for (const std::string needed : required) {
-      const std::size_t last = needed.rfind('/') + 1;
-      if (needed.substr(0, last) == path) xml_.required_child(element, needed.c_str() + last);
-    }
+  }
+
+  /// Whether Gazebo takes the default because an element contains no text.
+  bool is_empty(const Element& e) {
+    if (!xml_.text(e).empty()) return false;
+    skip(e, "empty <" + std::string(e.Name()) + ">");
+    return true;
+  }
+
+  void skip(const Element& e, const std::string& what) {
+    xml_.ignored_elements().add_harmless(what, xml_.where(e));
+  }
+  /// Skip an element that only has an effect elsewhere.
+  void skip_here(const Element& e) {
+    skip(e, "<" + std::string(e.Name()) + "> in <" + e.Parent()->ToElement()->Name() + ">");
   }
 
   struct Range {
@@ -103,6 +117,7 @@ class WorldReader {
     T spec = T::number(std::move(path), std::move(unit), fallback, std::move(meaning));
     spec.min = range.min, spec.max = range.max, spec.exclusive_min = range.open;
     return {spec, [this, spec, &target](const Element& e) {
+              if (is_empty(e)) return;
               target = xml_.number_in_text(e);
               const bool is_above = spec.exclusive_min ? target > spec.min : target >= spec.min;
               if (is_above && target <= spec.max) return;
@@ -117,11 +132,14 @@ class WorldReader {
       append_shortest(target[i], fallback.empty() ? fallback : fallback += ' ');
     }
     return {T::numbers(std::move(path), std::move(unit), fallback, std::move(meaning)).of(3),
-            [this, &target](const Element& e) { target = xml_.vector_in_text(e); }};
+            [this, &target](const Element& e) {
+              if (!is_empty(e)) target = xml_.vector_in_text(e);
+            }};
   }
 
   Row word(const TagSpec& spec) {
     return {spec, [this, spec](const Element& e) {
+              if (is_empty(e)) return;
               const std::string text = xml_.text(e);
               std::string alternatives;
               for (const std::string& choice : spec.choices) {
@@ -140,6 +158,34 @@ class WorldReader {
     return {spec, std::move(read)};
   }
 
+  Row update_rate(const char* path, const char* meaning) {
+    Row row = number(path, "1/s", world_.real_time_update_rate, {}, meaning);
+    row.read = [this, read = row.read](const Element& e) {
+      read(e);
+      if (world_.real_time_update_rate >= 0) return;
+      skip(e, "negative <" + std::string(e.Name()) + ">");
+      world_.real_time_update_rate = 0;
+    };
+    return row;
+  }
+
+  /// A value of <physics> that Gazebo moves to another element when it converts an old file.
+  /// \param minor  SDF 1.`minor` is the last version with that element
+  /// \param is_set  returns whether the file has the other element, which wins
+  Row moved(Row row, int minor, const std::function<bool()>& is_set) {
+    row.read = [this, read = row.read, minor, is_set](const Element& e) {
+      if (!is_at_most_sdf(xml_, e, minor) || is_set()) return skip_here(e);
+      read(e);
+    };
+    return row;
+  }
+  std::function<bool()> world_has(const char* name) {
+    return [this, name] { return xml_.child(*physics_->Parent()->ToElement(), name) != nullptr; };
+  }
+  std::function<bool()> physics_has(const char* name) {
+    return [this, name] { return xml_.child(*physics_, name) != nullptr; };
+  }
+
   std::vector<Row> table() {
     Atmosphere& air = world_.atmosphere;
     Origin& origin = world_.origin;
@@ -150,7 +196,7 @@ class WorldReader {
                                 "see [gazebo.md](gazebo.md)"));
     solver.read = [this, check = solver.read](const Element& e) {
       check(e);
-      world_.solver_type = xml_.text(e);
+      if (!xml_.text(e).empty()) world_.solver_type = xml_.text(e);
       world_.solver_type_where = xml_.where(e);
     };
     const Row iterations = {
@@ -159,6 +205,7 @@ class WorldReader {
             .at_least(1)
             .at_most(1e6),
         [this](const Element& e) {
+          if (is_empty(e)) return;
           const double value = xml_.number_in_text(e);
           if (!(value >= 1 && value <= 1e6) || value != std::floor(value)) {
             xml_.fail(e, "<iters> is out of range. Use a whole number from 1 to 1000000.");
@@ -192,52 +239,66 @@ class WorldReader {
                "altitude of the world's origin"),
         number("spherical_coordinates/heading_deg", "deg", origin.heading, {-360, 360},
                "rotation of the world's axes; RotorS' GPS receiver accepts only 0"),
-        other("include", "", [this](const Element& e) { read_include(e); }),
+        other("state",
+              "state of a saved world: its poses and scales replace those of the models, its "
+              "insertions are added and its deletions removed, and the time starts at `sim_time`",
+              ignored),
         other("include/uri",
-              "`model://ground_plane`: solid ground at z = 0; `model://sun`: ignored; any other is "
-              "an error",
+              "`model://NAME` on GAZEBO_MODEL_PATH, in ~/.gazebo/models or in ROS packages, "
+              "`package://`, `file://`; `model://ground_plane` and `model://sun` are built in",
               ignored),
+        other("include/name", "replaces the name of the model", ignored),
+        other("include/pose", "replaces the pose of the model", ignored),
+        other("include/static", "replaces `static` of the model", ignored),
         other("plugin", "a module that only senses or publishes, see below; any other is an error",
-              [this](const Element& e) { read_plugin(e); }),
-        other("model", "an inline ground plane: static, one link; any other model is an error",
-              [this](const Element& e) { read_model(e); }),
-        other("model/static", "must be `true`",
-              [this](const Element& e) {
-                if (xml_.text(e) == "true" || xml_.text(e) == "1") return;
-                xml_.fail(e, "only a static model is supported. Write true.");
-              }),
-        other("model/link/collision/geometry/plane/normal", "must be `0 0 1`",
-              [this](const Element& e) {
-                if (xml_.vector_in_text(e).isApprox(Vector3d::UnitZ())) return;
-                xml_.fail(e, "only a level plane is supported. Write 0 0 1.");
-              }),
-        other("model/link/collision/geometry/plane/size", "ignored: the ground is infinite",
-              ignored),
-        other("model/link/visual", "ignored", ignored),
+              [this](const Element& e) { skip_plugin(xml_, e); }),
+        other(
+            "model",
+            "a static model with a level ground plane at z = 0; the second of two models with one "
+            "name is ignored; a model without collision shapes is ignored",
+            ignored),
         other("physics", "attribute `type`, if given, must be `ode`; also written `physics:ode`",
               physics),
         other("physics:ode", "", physics),
-        vector("physics/gravity", "m/s^2", world_.gravity_W,
-               "the same as `gravity`; give only one of them"),
-        vector("physics/magnetic_field", "T", world_.magnetic_field_W,
-               "the same as `magnetic_field`; give only one of them"),
+        moved(vector("physics/gravity", "m/s^2", world_.gravity_W,
+                     "up to SDF 1.5: `gravity`, unless the world has it; ignored from SDF 1.6 on, "
+                     "as in Gazebo"),
+              5, world_has("gravity")),
+        moved(vector("physics/magnetic_field", "T", world_.magnetic_field_W,
+                     "up to SDF 1.5: `magnetic_field`, unless the world has it; ignored from SDF "
+                     "1.6 on, as in Gazebo"),
+              5, world_has("magnetic_field")),
         number("physics/max_step_size", "s", world_.max_step_size, {shortest_step},
                "time step, unless `--dt` or `dt=` sets it"),
-        number("physics/real_time_update_rate", "1/s", world_.real_time_update_rate, {0},
-               "steps per second of wall-clock time for ROS nodes; 0: as fast as possible"),
-        number("physics/updateRate", "1/s", world_.real_time_update_rate, {0},
-               "the thesis' name for `real_time_update_rate`"),
-        number("physics/real_time_factor", "", real_time_factor_, above(0),
+        moved(number("physics/ode/solver/dt", "s", world_.max_step_size, {shortest_step},
+                     "up to SDF 1.3: `physics/max_step_size`; ignored from SDF 1.4 on"),
+              3, physics_has("max_step_size")),
+        update_rate("physics/real_time_update_rate",
+                    "steps per second of wall-clock time for ROS nodes; 0 or less: as fast as "
+                    "possible"),
+        update_rate("physics/updateRate", "the thesis' name for `real_time_update_rate`"),
+        moved(update_rate("physics/update_rate",
+                          "up to SDF 1.3: `real_time_update_rate`; ignored from SDF 1.4 on"),
+              3, physics_has("real_time_update_rate")),
+        number("physics/real_time_factor", "", real_time_factor_, {},
                "no effect, as in Gazebo; use `real_time_update_rate`"),
+        other("physics/max_contacts",
+              "upper limit of the contact points of a pair of shapes, a whole number from 10 on; "
+              "then it has no effect",
+              [this](const Element& e) { read_max_contacts(e); }),
+        word(T::choice("physics/ode/solver/friction_model", {"pyramid_model"},
+                       "model of dry friction")),
         solver,
         iterations,
         number("physics/ode/solver/sor", "", world_.solver_sor, above(0, 2),
                "over-relaxation of the quick solver"),
         other("physics/ode/solver/use_dynamic_moi_rescaling", "must be `0`",
               [this](const Element& e) {
-                if (xml_.text(e) == "0" || xml_.text(e) == "false") return;
+                if (is_empty(e) || xml_.text(e) == "0" || xml_.text(e) == "false") return;
+                if (xml_.ignored_elements().ignores({e.Name()})) return;
                 xml_.fail(e, "<use_dynamic_moi_rescaling> is '" + xml_.text(e) +
-                                 "', but the engines do not rescale moments of inertia. Write 0.");
+                                 "', but the engines do not rescale moments of inertia. Write 0." +
+                                 suggest_ignoring(e.Name()));
               }),
         number("physics/ode/constraints/erp", "", world_.erp, {0, 1},
                "fraction of a hinge's error that a step removes"),
@@ -256,23 +317,43 @@ class WorldReader {
                            first->Name() + "> (" + xml_.where(*first) + "). Keep one of them.");
   }
 
-  /// Reject an attribute `type` other than the supported one.
+  /// Reject an attribute `type` other than the supported one, unless the user ignores it.
   void only_type(const Element& e, const std::string& supported) {
     const char* type = e.Attribute("type");
-    if (!type || type == supported) return;
-    xml_.fail(
-        e, std::string(e.Name()) + " type '" + type + "' is not supported. Use " + supported + ".");
+    if (!type || type == supported || xml_.ignored_elements().ignores({type})) return;
+    xml_.fail(e, std::string(e.Name()) + " type '" + type + "' is not supported. Use " + supported +
+                     "." + suggest_ignoring(type));
+  }
+
+  /// Return the <physics> that Gazebo uses: the default one, else the last with the first one's
+  /// name.
+  const Element* choose_physics(const Element& world) {
+    const Element* const first = xml_.child(world, "physics");
+    refuse_both(first, xml_.child(world, "physics:ode"));
+    const auto name_of = [](const Element& e) {
+      const char* name = e.Attribute("name");
+      return std::string(name ? name : "");
+    };
+    const Element* chosen = first ? first : xml_.child(world, "physics:ode");
+    for (const Element* e = first; e; e = e->NextSiblingElement("physics")) {
+      if (e->BoolAttribute("default")) return e;
+      if (name_of(*e) == name_of(*first)) chosen = e;
+    }
+    return chosen;
   }
 
   void read_physics(const Element& physics) {
-    const Element& world = *physics.Parent()->ToElement();
-    refuse_both(xml_.child(world, "physics"), xml_.child(world, "physics:ode"));
-    for (const char* const name : {"gravity", "magnetic_field"}) {
-      refuse_both(xml_.child(world, name), xml_.child(physics, name));
-    }
+    if (&physics != physics_) return skip(physics, "a further <physics>");
     refuse_both(xml_.child(physics, "real_time_update_rate"), xml_.child(physics, "updateRate"));
     only_type(physics, "ode");
     read_children(physics, "physics/");
+  }
+
+  void read_max_contacts(const Element& e) {
+    if (is_empty(e) || xml_.number_in_text(e) >= Surface().max_contacts) return;
+    if (xml_.ignored_elements().ignores({e.Name()})) return;
+    xml_.fail(e, "<max_contacts> is below 10, which is not supported. Write 10 or more." +
+                     suggest_ignoring(e.Name()));
   }
 
   void read_atmosphere(const Element& atmosphere) {
@@ -280,52 +361,25 @@ class WorldReader {
     read_children(atmosphere, "atmosphere/");
   }
 
-  void read_include(const Element& include) {
-    const Element* source = xml_.child(include, "uri");
-    const std::string uri = source ? xml_.text(*source) : "";
-    if (source && uri != "model://ground_plane" && uri != "model://sun") {
-      if (xml_.ignored_elements().ignores({uri})) return;
-      xml_.fail(*source,
-                "'" + uri +
-                    "' is not supported. Include only model://ground_plane or model://sun." +
-                    suggest_ignoring(uri));
+  void read_models_of(const Element& world) {
+    const WorldModels models = read_models(xml_, world);
+    world_.start_time = models.start_time;
+    world_.ignored_models = models.ignored;
+    for (const StaticShape& shape : models.shapes) {
+      const bool is_level = shape.kind == "plane" && shape.size.normalized() == Vector3d::UnitZ();
+      if (!is_level || shape.pose_W.position.z() != 0) {
+        throw InputError(shape.where + ": the <" + shape.kind + "> of model '" + shape.model +
+                         "' is an obstacle, but only a level ground plane at z = 0 is supported. "
+                         "Remove it." +
+                         (shape.model.empty() ? "" : suggest_ignoring(shape.model)));
+      }
+      world_.ground_plane = true;
     }
-    read_children(include, "include/");
-    if (uri == "model://ground_plane") world_.ground_plane = true;  // model://sun is only a light
-  }
-
-  void read_plugin(const Element& plugin) {
-    const std::string name = xml_.attribute(plugin, "name");
-    const std::string filename = xml_.attribute(plugin, "filename");
-    if (xml_.ignored_elements().ignores({name, filename})) return;
-    if (decide_on_module(filename) == Handling::skip) {
-      return xml_.ignored_elements().add_harmless(filename, xml_.where(plugin));
-    }
-    xml_.fail(plugin, "plugin '" + name + "': " + filename +
-                          " is a world plugin of Gazebo, which quadcore does not load. Remove it." +
-                          suggest_ignoring(filename));
-  }
-
-  /// An inline model must be a ground plane, but the user may ignore a named one.
-  void read_model(const Element& model) {
-    const char* name = model.Attribute("name");
-    if (!name) return read_ground_plane(model);
-    if (xml_.ignored_elements().ignores({name})) return;
-    try {
-      read_ground_plane(model);
-    } catch (const InputError& error) {
-      throw InputError(error.what() + suggest_ignoring(name));
-    }
-  }
-
-  /// A ground plane is static and level and passes through the origin.
-  void read_ground_plane(const Element& model) {
-    read_children(model, "model/");
-    world_.ground_plane = true;
   }
 
   World world_;
   double real_time_factor_ = 1;
+  const Element* physics_ = nullptr;  ///< the <physics> that is read
   Xml xml_;
   std::vector<Row> rows_ = table();
 };
@@ -333,8 +387,9 @@ class WorldReader {
 }  // namespace
 
 World read_world(const Document& document, const std::vector<std::string>& ignore) {
-  World world = WorldReader(document, ignore).read();
-  world.source = std::make_shared<Source>(Source{document, ignore});
+  const Document whole = embed_models(document, ignore);
+  World world = WorldReader(whole, ignore).read();
+  world.source = std::make_shared<Source>(Source{whole, ignore});
   return world;
 }
 

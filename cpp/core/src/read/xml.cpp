@@ -19,7 +19,7 @@ std::string list_accepted(const Xml::Element& element, const std::vector<std::st
 
 Xml::Xml(const Document& document, const std::string& root_name, IgnoredElements& ignored_elements)
     : document_(document), ignored_elements_(ignored_elements) {
-  check_xml_limits(document);
+  check_xml_limits(document, root_name == "sdf" ? Document::largest_world : Document::largest);
   if (trimmed(document.text).empty()) {
     throw InputError(document.at(1) + ": the file is empty. Write a <" + root_name + "> element.");
   }
@@ -72,7 +72,12 @@ std::vector<const Xml::Element*> Xml::children(const Element& element,
       continue;
     }
     if (!seen.insert(name).second && !repeatable.count(name)) {
-      fail(*child, "a second <" + name + "> in <" + element.Name() + ">. Keep one of them.");
+      const std::string what = "a second <" + name + "> in <" + element.Name() + ">";
+      if (decide_on_excess(path(element)) == Handling::reject) {
+        fail(*child, what + ". Keep one of them.");
+      }
+      ignored_elements_.add_harmless(what, where(*child));
+      continue;
     }
     found.push_back(child);
   }
@@ -87,7 +92,9 @@ std::string Xml::path(const Element& element) const {
 void Xml::skip_or_fail(const Element& parent, const Element& child,
                        const std::set<std::string>& allowed) const {
   const std::string name = child.Name();
-  const Handling handling = decide_on_element(path(parent), name);
+  const std::vector<std::string> names(allowed.begin(), allowed.end());
+  const std::string similar = suggest(name, names);
+  const Handling handling = decide_on_element(path(parent), name, !similar.empty());
   if (handling != Handling::reject && ignored_elements_.ignores({name})) return;
   if (handling == Handling::skip)
     return ignored_elements_.add_harmless("<" + name + ">", where(child));
@@ -96,8 +103,7 @@ void Xml::skip_or_fail(const Element& parent, const Element& child,
                     "> is an xacro element, which is expanded only in files named *.xacro. Rename "
                     "the file.");
   }
-  const std::vector<std::string> names(allowed.begin(), allowed.end());
-  fail(child, "<" + name + "> in <" + parent.Name() + "> is not supported." + suggest(name, names) +
+  fail(child, "<" + name + "> in <" + parent.Name() + "> is not supported." + similar +
                   list_accepted(parent, names) +
                   (handling == Handling::reject_unless_ignored ? suggest_ignoring(name) : ""));
 }
@@ -119,8 +125,13 @@ void Xml::only_attributes(const Element& element, const std::set<std::string>& a
       continue;
     }
     const std::vector<std::string> names(allowed.begin(), allowed.end());
-    fail(element, "attribute " + name + " of <" + element.Name() + "> is not supported." +
-                      suggest(name, names) + list_accepted(element, names));
+    const std::string similar = suggest(name, names);
+    const std::string what = "attribute " + name + " of <" + element.Name() + ">";
+    if (similar.empty() && decide_on_excess(path(element)) == Handling::skip) {
+      if (*a->Value()) ignored_elements_.add_harmless(what, where(element));
+      continue;
+    }
+    fail(element, what + " is not supported." + similar + list_accepted(element, names));
   }
 }
 
@@ -154,8 +165,8 @@ Vector3d Xml::vector(const Element& element, const char* name, const Vector3d& f
                    attribute(element, name));
 }
 
-std::string Xml::text(const Element& element) const {
-  only_attributes(element, {});
+std::string Xml::text(const Element& element, const std::set<std::string>& attributes) const {
+  only_attributes(element, attributes);
   const tinyxml2::XMLText* text = nullptr;
   for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
     if (const Element* inner = node->ToElement()) {

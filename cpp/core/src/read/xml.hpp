@@ -46,7 +46,7 @@ class Xml {
   double number(const Element& element, const char* attribute, double fallback) const;
   Vector3d vector(const Element& element, const char* attribute, const Vector3d& fallback) const;
   /// Return the trimmed text of an element that may contain nothing else.
-  std::string text(const Element& element) const;
+  std::string text(const Element& element, const std::set<std::string>& attributes = {}) const;
   double number_in_text(const Element& element) const;
   Vector3d vector_in_text(const Element& element) const;
 

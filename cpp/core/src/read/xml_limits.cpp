@@ -96,9 +96,10 @@ class MarkupWalk {
 
 }  // namespace
 
-void check_xml_limits(const Document& document) {
-  if (document.text.size() > Document::largest) {
-    throw InputError(document.name + ": the file exceeds the limit of 1 MB. Use a smaller file.");
+void check_xml_limits(const Document& document, std::size_t largest) {
+  if (document.text.size() > largest) {
+    throw InputError(document.name + ": the file exceeds the limit of " +
+                     std::to_string(largest / 1000000) + " MB. Use a smaller file.");
   }
   check_text(document);
   MarkupWalk(document).check();

@@ -7,6 +7,7 @@ namespace quadcore {
 /// Reject a document that would block the parser, overflow its stack or end it early: one that is
 /// too large, not UTF-8, nested too deeply, or has too many attributes on one element. The limits
 /// are far beyond any model or world. Throws InputError with FILE:LINE.
-void check_xml_limits(const Document& document);
+/// \param largest  maximum size in bytes
+void check_xml_limits(const Document& document, std::size_t largest);
 
 }  // namespace quadcore

@@ -27,6 +27,11 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   load_plugins(model_, options);
   note_hooks();
   warn(world.ignored_elements.warning());
+  if (!world.ignored_models.empty()) {
+    warn("the vehicle passes through " + joined(world.ignored_models) +
+         ", because these models of the world are ignored on request. Remove --ignore to keep "
+         "them.");
+  }
   ignored_ = ignored_in({&model_.ignored_elements, &world.ignored_elements});
   engine_ = make_engine(options.engine, model_, world);
   for (const std::string& warning : engine_->warnings()) warn(warning);
@@ -41,6 +46,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   VehicleState start = state_;
   start.position = options.spawn.xyz;
   start.orientation = options.spawn.rotation();
+  start.time = world.start_time;
   try {
     check_drivers();
     take_along();

@@ -12,6 +12,8 @@ std::string Document::at(int line) const {
   return name + ":" + std::to_string(line);
 }
 
-Document Document::read(const std::string& path) { return {path, read_text_file(path, largest)}; }
+Document Document::read(const std::string& path) {
+  return {path, read_text_file(path, largest_world)};
+}
 
 }  // namespace quadcore

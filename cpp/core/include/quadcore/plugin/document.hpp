@@ -14,9 +14,10 @@ namespace quadcore QUADCORE_EXPORT {
 struct Document {
   /// \name Limits, far beyond any model or world
   /// @{
-  static constexpr std::size_t largest = 1000000;  ///< bytes
-  static constexpr int most_levels = 64;           ///< nesting depth of elements
-  static constexpr int most_attributes = 100;      ///< attributes of one element
+  static constexpr std::size_t largest = 1000000;         ///< bytes of a model
+  static constexpr std::size_t largest_world = 10000000;  ///< bytes of a world
+  static constexpr int most_levels = 64;                  ///< nesting depth of elements
+  static constexpr int most_attributes = 100;             ///< attributes of one element
   /// @}
 
   std::string name;  ///< file name for error messages

@@ -52,7 +52,9 @@ struct World {
   Atmosphere atmosphere;                    ///< air at z = 0
   Vector3d magnetic_field_W{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< x east, y north, z up [T]
   Origin origin;                                                  ///< position on Earth
-  IgnoredElements ignored_elements;  ///< elements that the reader did not use
+  double start_time = 0;                    ///< time at which a saved world starts [s]
+  IgnoredElements ignored_elements;         ///< elements that the reader did not use
+  std::vector<std::string> ignored_models;  ///< ignored on request, though they may be obstacles
   /// Source of the world; null unless read_world() created it.
   std::shared_ptr<const Source> source;
 };

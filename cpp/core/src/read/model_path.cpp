@@ -1,0 +1,133 @@
+#include "model_path.hpp"
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int newest_minor = 7;           // Gazebo 11 reads SDF 1.7
+constexpr int deepest_package_level = 6;  // folders between ROS_PACKAGE_PATH and a package
+
+std::vector<std::string> folders_of(const char* variable) {
+  std::vector<std::string> folders;
+  const char* value = std::getenv(variable);
+  std::istringstream list(value ? value : "");
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (!folder.empty()) folders.push_back(folder);
+  }
+  return folders;
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code unreachable;
+  return fs::is_regular_file(path, unreachable);
+}
+
+/// Return the SDF file of a model's folder, or "".
+std::string find_sdf(const fs::path& folder) {
+  if (is_file(folder)) return folder.string();
+  tinyxml2::XMLDocument config;
+  std::string name = "model.sdf";
+  if (config.LoadFile((folder / "model.config").c_str()) == tinyxml2::XML_SUCCESS) {
+    int best = -1;
+    const auto* model = config.FirstChildElement("model");
+    for (const auto* sdf = model ? model->FirstChildElement("sdf") : nullptr; sdf;
+         sdf = sdf->NextSiblingElement("sdf")) {
+      const char* version = sdf->Attribute("version");
+      const auto minor = parse_number(
+          version && std::string(version).rfind("1.", 0) == 0 ? trimmed(version).substr(2) : "0");
+      if (!minor || *minor > newest_minor || *minor <= best || !sdf->GetText()) continue;
+      best = static_cast<int>(*minor);
+      name = trimmed(sdf->GetText());
+    }
+  }
+  const fs::path file = folder / name;
+  return is_file(file) ? file.string() : "";
+}
+
+/// Return what follows a prefix, or "" if the text begins otherwise.
+std::string after(const std::string& text, const std::string& prefix) {
+  return text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : "";
+}
+
+}  // namespace
+
+ModelPath::ModelPath() : folders_(folders_of("GAZEBO_MODEL_PATH")) {
+  if (const char* home = std::getenv("HOME")) {
+    folders_.push_back(std::string(home) + "/.gazebo/models");
+  }
+}
+
+std::string ModelPath::find(const std::string& uri) {
+  if (const std::string path = after(uri, "file://"); !path.empty()) return find_sdf(path);
+  if (const std::string path = after(uri, "package://"); !path.empty()) {
+    const std::size_t slash = std::min(path.find('/'), path.size());
+    for (const Package& package : packages()) {
+      if (package.name == path.substr(0, slash))
+        return find_sdf(package.folder + path.substr(slash));
+    }
+    return "";
+  }
+  const std::string name = after(uri, "model://");
+  if (name.empty()) return "";
+  for (const std::string& folder : folders_) {
+    const std::string found = find_sdf(fs::path(folder) / name);
+    if (!found.empty()) return found;
+  }
+  for (const Package& package : packages()) {
+    for (const std::string& folder : package.model_folders) {
+      const std::string found = find_sdf(fs::path(folder) / name);
+      if (!found.empty()) return found;
+    }
+  }
+  return "";
+}
+
+const std::vector<ModelPath::Package>& ModelPath::packages() {
+  if (has_packages_) return packages_;
+  has_packages_ = true;
+  std::vector<fs::path> files;
+  for (const std::string& root : folders_of("ROS_PACKAGE_PATH")) {
+    std::error_code unreachable;
+    const auto options = fs::directory_options::skip_permission_denied;
+    for (fs::recursive_directory_iterator at(root, options, unreachable), end; at != end;
+         at.increment(unreachable)) {
+      if (unreachable) break;
+      if (at.depth() >= deepest_package_level) at.disable_recursion_pending();
+      if (at->path().filename() == "package.xml") files.push_back(at->path());
+    }
+  }
+  std::sort(files.begin(), files.end());  // the order of a folder's entries is arbitrary
+  for (const fs::path& file : files) {
+    tinyxml2::XMLDocument manifest;
+    if (manifest.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) continue;
+    const auto* package = manifest.FirstChildElement("package");
+    const auto* name = package ? package->FirstChildElement("name") : nullptr;
+    if (!name || !name->GetText()) continue;
+    const std::string folder = file.parent_path().string();
+    Package found{trimmed(name->GetText()), folder, {}};
+    const auto* exported = package->FirstChildElement("export");
+    for (const auto* e = exported ? exported->FirstChildElement("gazebo_ros") : nullptr; e;
+         e = e->NextSiblingElement("gazebo_ros")) {
+      const char* path = e->Attribute("gazebo_model_path");
+      if (!path) continue;
+      std::string models = path;
+      const std::string prefix = "${prefix}";
+      if (models.rfind(prefix, 0) == 0) models.replace(0, prefix.size(), folder);
+      found.model_folders.push_back(models);
+    }
+    packages_.push_back(found);
+  }
+  return packages_;
+}
+
+}  // namespace quadcore

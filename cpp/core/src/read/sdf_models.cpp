@@ -1,0 +1,263 @@
+#include "sdf_models.hpp"
+
+#include <memory>
+#include <set>
+
+#include "included_models.hpp"
+#include "quadcore/harmless_elements.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/text.hpp"
+#include "sdf_frames.hpp"
+#include "sdf_shape.hpp"
+#include "sdf_state.hpp"
+#include "sdf_version.hpp"
+
+namespace quadcore {
+namespace {
+
+using Element = Xml::Element;
+
+/// Elements of a model that a model that stands still does not have an effect with.
+const std::set<std::string> still_elements = {"static",      "self_collide", "allow_auto_disable",
+                                              "enable_wind", "joint",        "frame",
+                                              "gripper",     "pose"};
+/// Elements of a link without an effect if the link stands still.
+const std::set<std::string> still_link_elements = {
+    "pose",        "visual", "inertial",       "gravity", "kinematic",        "self_collide",
+    "enable_wind", "light",  "velocity_decay", "damping", "must_be_base_link"};
+
+std::string name_of(const Element& e) {
+  const char* name = e.Attribute("name");
+  return name ? trimmed(name) : "";
+}
+
+/// A model to read: an element of the world, or a file that it includes.
+struct Given {
+  const Xml* xml;                    ///< document of `model`
+  const Element* model;              ///< `<model>`
+  const Element* include = nullptr;  ///< the `<include>` that overrides it, in the world's document
+};
+
+class ModelReader {
+ public:
+  ModelReader(const Xml& xml, const Element& world)
+      : xml_(xml),
+        world_(world),
+        saved_(read_saved_state(xml, world)),
+        world_frames_(xml, world, !is_at_most_sdf(xml, world, 6)) {}
+
+  WorldModels read() {
+    found_.start_time = saved_.time;
+    read_items(world_);
+    for (const Element* inserted : saved_.inserted) read_items(*inserted);
+    return std::move(found_);
+  }
+
+ private:
+  void read_items(const Element& parent) {
+    for (const Element* e = parent.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      const std::string kind = e->Name();
+      if (kind == "model") read_item({&xml_, e});
+      if (kind == "include") read_include(*e, [this](const Given& g) { read_item(g); });
+    }
+  }
+
+  /// Find what an `<include>` names, unless it is no model or the user ignores it.
+  template <class Read>
+  void read_include(const Element& include, const Read& read) {
+    const std::string uri = xml_.text(xml_.required_child(include, "uri"));
+    const Element* own = xml_.child(include, "name");
+    const std::string name = own ? xml_.text(*own) : uri;
+    if (xml_.ignored_elements().ignores({uri, name})) {
+      found_.ignored.push_back(name);
+      return;
+    }
+    const Element* sdf = xml_.child(include, "sdf");
+    const Xml* xml = &xml_;
+    if (sdf) {
+      files_.emplace(uri, sdf);
+    } else if (const auto file = files_.find(uri); file != files_.end()) {
+      sdf = file->second;
+    } else if (const std::string text = find_builtin_model(uri); !text.empty()) {
+      xml = &open_builtin(uri, text);
+      sdf = &xml->root();
+    } else {
+      xml_.fail(*xml_.child(include, "uri"),
+                "'" + uri +
+                    "' is not found. Add the folder that contains the model to GAZEBO_MODEL_PATH." +
+                    suggest_ignoring(uri));
+    }
+    const Element* model = xml->child(*sdf, "model");
+    if (model) return read({xml, model, &include});
+    if (xml->child(*sdf, "light") || xml->child(*sdf, "actor")) return;
+    xml_.fail(include,
+              "'" + uri + "' contains no <model>. Correct its file." + suggest_ignoring(uri));
+  }
+
+  const Xml& open_builtin(const std::string& uri, const std::string& text) {
+    documents_.push_back(std::make_unique<Document>(Document{uri, text}));
+    builtins_.push_back(std::make_unique<Xml>(*documents_.back(), "sdf", xml_.ignored_elements()));
+    return *builtins_.back();
+  }
+
+  /// The element that counts: that of the include, which replaces that of the model's file.
+  static const Element* overriding(const Given& given, const char* name) {
+    const Element* own = given.include ? given.include->FirstChildElement(name) : nullptr;
+    return own ? own : given.model->FirstChildElement(name);
+  }
+
+  /// Read a model or an include of the world.
+  void read_item(const Given& given) {
+    const Element* own = given.include ? given.include->FirstChildElement("name") : nullptr;
+    const std::string name = own ? xml_.text(*own) : name_of(*given.model);
+    const Element& place = given.include ? *given.include : *given.model;
+    if (!name.empty() && !names_.insert(name).second) {
+      return xml_.ignored_elements().add_harmless("a second model '" + name + "'",
+                                                  xml_.where(place));
+    }
+    if (!name.empty() && xml_.ignored_elements().ignores({name})) {
+      found_.ignored.push_back(name);
+      return;
+    }
+    if (saved_.deleted.count(name)) return;
+    const auto saved = saved_.models.find(name);
+    try {
+      const bool overrides = given.include && given.include->FirstChildElement("pose");
+      const Placement pose =
+          overrides || !given.include ? world_frames_.find_pose(place) : read_own_pose(given);
+      read_model(given, name, pose, pose, false,
+                 saved == saved_.models.end() ? SavedModel() : saved->second);
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      if (name.empty() || what.find("--ignore") != std::string::npos) throw;
+      throw InputError(what + suggest_ignoring(name));
+    }
+  }
+
+  static Placement read_own_pose(const Given& given) {
+    const Element* pose = given.model->FirstChildElement("pose");
+    return pose ? read_placement(*given.xml, *pose) : Placement();
+  }
+
+  bool is_true(const Element& e) const {
+    const std::string text = lower(xml_.text(e));
+    return text == "true" || text == "1";
+  }
+
+  /// Read a model and what is nested in it.
+  /// \param written  pose in the world as the model has it
+  /// \param X_WM  pose in the world without a saved state of this model
+  void read_model(const Given& given, const std::string& name, const Placement& written,
+                  Placement X_WM, bool is_parent_static, const SavedModel& saved) {
+    const Xml& xml = *given.xml;
+    const Element& model = *given.model;
+    const Element* fixed = overriding(given, "static");
+    const bool is_static = fixed ? is_true(*fixed) : is_parent_static;
+    const SdfFrames frames(xml, model, !is_at_most_sdf(xml, model, 6));
+    if (saved.pose_W) X_WM = *saved.pose_W;
+    bool is_first = true;
+    for (const Element* link = xml.child(model, "link"); link;
+         link = link->NextSiblingElement("link")) {
+      const Placement X_ML = frames.find_pose(*link);
+      Placement X_WL = X_WM * X_ML;
+      const auto moved = saved.links.find(name_of(*link));
+      if (moved != saved.links.end()) {
+        X_WL = moved->second;
+        if (is_first) X_WM = X_WL * X_ML.inverse();
+      }
+      is_first = false;
+      read_link(given, *link, name, is_static, frames, written * X_ML, X_WL, saved.scale);
+    }
+    for (const Element* e = model.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      const std::string kind = e->Name();
+      const auto nest = [&](const Given& nested, const std::string& inner, const Placement& pose) {
+        const auto state = saved.models.find(inner);
+        read_model(nested, name + "::" + inner, written * pose, X_WM * pose, is_static,
+                   state == saved.models.end() ? SavedModel() : state->second);
+      };
+      if (kind == "model") {
+        nest({&xml, e}, name_of(*e), frames.find_pose(*e));
+      } else if (kind == "include") {
+        read_include(*e, [&](const Given& nested) {
+          const Element* own = e->FirstChildElement("name");
+          nest(nested, own ? xml.text(*own) : name_of(*nested.model),
+               e->FirstChildElement("pose") ? frames.find_pose(*e) : read_own_pose(nested));
+        });
+      } else if (kind == "plugin") {
+        skip_plugin(xml, *e);
+      } else if (kind != "link" && !still_elements.count(kind)) {
+        xml.ignored_elements().add_harmless("<" + kind + "> in <model>", xml.where(*e));
+      }
+    }
+    if (!given.include) return;
+    for (const Element* e = given.include->FirstChildElement("plugin"); e;
+         e = e->NextSiblingElement("plugin")) {
+      skip_plugin(xml_, *e);
+    }
+  }
+
+  void read_link(const Given& given, const Element& link, const std::string& model, bool is_static,
+                 const SdfFrames& frames, const Placement& written, const Placement& X_WL,
+                 const Vector3d& scale) {
+    const Xml& xml = *given.xml;
+    for (const Element* e = link.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      const std::string kind = e->Name();
+      if (kind != "collision") {
+        if (!still_link_elements.count(kind)) {
+          xml.ignored_elements().add_harmless("<" + kind + "> in <link>", xml.where(*e));
+        }
+        continue;
+      }
+      std::optional<StaticShape> shape = read_static_shape(xml, *e, scale);
+      if (!shape) continue;
+      // A plane stands still in a free model, and where <pose> puts it, whatever the state says.
+      const bool is_plane = shape->kind == "plane";
+      if (!is_static && !is_plane) {
+        xml_.fail(given.include ? *given.include : *given.model,
+                  "the model '" + model +
+                      "' is not static, but free bodies are not supported. Write "
+                      "<static>true</static> if it stands still.");
+      }
+      const Element* pose = e->FirstChildElement("pose");
+      const Placement own = frames.find_pose(*e);
+      const bool is_in_link =
+          !pose || !pose->Attribute("relative_to") || is_at_most_sdf(xml, *e, 6);
+      const Placement& base = is_plane ? written : X_WL;
+      shape->pose_W = is_in_link ? base * own : X_WL * frames.find_pose(link).inverse() * own;
+      shape->model = model;
+      shape->name = name_of(link) + "::" + name_of(*e);
+      found_.shapes.push_back(*shape);
+    }
+  }
+
+  const Xml& xml_;
+  const Element& world_;
+  SavedState saved_;
+  SdfFrames world_frames_;
+  WorldModels found_;
+  std::set<std::string> names_;
+  std::map<std::string, const Element*> files_;  ///< embedded `<sdf>` by URI
+  std::vector<std::unique_ptr<Document>> documents_;
+  std::vector<std::unique_ptr<Xml>> builtins_;
+};
+
+}  // namespace
+
+void skip_plugin(const Xml& xml, const Element& plugin) {
+  const std::string name = xml.attribute(plugin, "name");
+  const std::string filename = xml.attribute(plugin, "filename");
+  if (xml.ignored_elements().ignores({name, filename})) return;
+  if (decide_on_module(filename) == Handling::skip) {
+    return xml.ignored_elements().add_harmless(filename, xml.where(plugin));
+  }
+  xml.fail(plugin, "plugin '" + name + "': " + filename + " is a " +
+                       plugin.Parent()->ToElement()->Name() +
+                       " plugin of Gazebo, which quadcore does not load. Remove it." +
+                       suggest_ignoring(filename));
+}
+
+WorldModels read_models(const Xml& xml, const Element& world) {
+  return ModelReader(xml, world).read();
+}
+
+}  // namespace quadcore

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "quadcore/plugin/model.hpp"
+#include "sdf_pose.hpp"
+#include "xml.hpp"
+
+namespace quadcore {
+
+/// A collision shape of a world that stands still.
+struct StaticShape {
+  std::string model;  ///< "MODEL", or "MODEL::NESTED" for a nested model
+  std::string name;   ///< "LINK::COLLISION"
+  std::string kind;   ///< element in `<geometry>`
+  Vector3d size;      ///< box x, y, z; cylinder radius, length; sphere radius [m]; plane: normal
+  Placement pose_W;   ///< pose in the world; of a plane only z counts
+  Surface surface;    ///< contact parameters
+  std::string where;  ///< FILE:LINE
+};
+
+/// The models of a world.
+struct WorldModels {
+  std::vector<StaticShape> shapes;   ///< in the order of the file
+  std::vector<std::string> ignored;  ///< models that the user ignores, or URIs
+  double start_time = 0;             ///< time at which a saved world starts [s]
+};
+
+/// Read the models and included models of a world as Gazebo 11 does. Models that nothing feels are
+/// recorded as harmless. Throws InputError with FILE:LINE and a proposal to ignore the model for
+/// one that the vehicle could feel but that is not supported.
+WorldModels read_models(const Xml& xml, const Xml::Element& world);
+
+/// Skip a Gazebo plugin that only senses or publishes. Throws InputError for any other one, unless
+/// the user ignores it.
+void skip_plugin(const Xml& xml, const Xml::Element& plugin);
+
+}  // namespace quadcore
