@@ -106,9 +106,9 @@ def test_the_command_line_varies_a_parameter_in_evaluate_and_sweep():
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("mine:Lee:tilts=6", "has no parameter 'tilts' Did you mean 'tilt'?. Use some of kx,"),
+        ("mine:Lee:tilts=6", "has no parameter 'tilts'. Did you mean 'tilt'? Use some of kx,"),
         ("mine:Lee:mass=6", "has no parameter 'mass'. Use some of kx, kv, flip"),
-        ("mine:Lee:kx=fast", "'kx=fast' is not one KEY=NUMBER"),
+        ("mine:Lee:kx=fast", "'kx=fast' is not of the form KEY=NUMBER"),
         ("mine:level:thrust=2", "has no parameter 'thrust'. Use some of share."),
         ("mine:kx=6", "no name is given. Write MODULE:NAME or FILE.py."),
     ],

@@ -47,7 +47,7 @@ def set_attribute(who: str, controller: Any, name: str, value: float) -> None:
     if name not in known:
         listed = {**_list_arguments(type(controller)), **known}
         advice = f"Use some of {', '.join(listed)}." if listed else "It has none."
-        raise InputError(f"{who} has no parameter '{name}'{suggest(name, list(listed))}. {advice}")
+        raise InputError(f"{who} has no parameter '{name}'.{suggest(name, list(listed))} {advice}")
     try:
         setattr(controller, name, _convert(value, known[name]))
     except (AttributeError, TypeError) as error:

@@ -116,7 +116,7 @@ def read_mapping(given: Union[str, Path]) -> LogMapping:
     elif path.suffix not in (".yaml", ".yml"):
         known = list_mappings()
         raise InputError(
-            f"mapping '{given}' does not exist{suggest(str(given), known)}. Give a .yaml file, or "
+            f"mapping '{given}' does not exist.{suggest(str(given), known)} Give a .yaml file, or "
             f"one of {', '.join(known)}."
         )
     try:
@@ -188,7 +188,7 @@ def _check_keys(where: str, given: Any, known: Tuple[str, ...]) -> None:
     for key in given:
         if key not in known:
             raise InputError(
-                f"{where}: '{key}' is unknown{suggest(str(key), known)}. Use {', '.join(known)}."
+                f"{where}: '{key}' is unknown.{suggest(str(key), known)} Use {', '.join(known)}."
             )
 
 

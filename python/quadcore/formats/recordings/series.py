@@ -71,7 +71,7 @@ class Columns:
         for name in names:
             if name not in self._columns:
                 near = suggest(name, self.names)
-                raise InputError(f"{self.where}: column '{name}' does not exist{near}")
+                raise InputError(f"{self.where}: column '{name}' does not exist.{near}")
         parts = [np.asarray(self._columns[name], dtype=float) for name in names]
         if len({len(part) for part in parts}) != 1:
             raise InputError(f"{self.where}: {', '.join(names)} have different numbers of rows")

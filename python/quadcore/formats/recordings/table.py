@@ -41,7 +41,7 @@ def read_table(path: Path, data: bytes, wanted: Sequence[str], time: str) -> Col
     header = read_header(path, data)
     if time not in header:
         raise InputError(
-            f"{path}:1: column '{time}' of the time does not exist{suggest(time, header)}"
+            f"{path}:1: column '{time}' of the time does not exist.{suggest(time, header)}"
         )
     names = [name for name in dict.fromkeys([time, *wanted]) if name in header]
     places = [header.index(name) for name in names]
