@@ -97,7 +97,7 @@ void Instance::step(double time, double length) {
 bool Instance::is_said(const std::string& name, const Waiting& message) const {
   const Topics& topics = simulation_->topics();
   const Topic& topic = topics[topics.at(name)];
-  return simulation_->time() > 0 || topic.count > 0 || message.values != topic.values ||
+  return flown_time() > 0 || topic.count > 0 || message.values != topic.values ||
          name == Simulation::command_topic;
 }
 
@@ -109,7 +109,11 @@ void Instance::reset() {
   told_ = 0;
 }
 
-double Instance::time() const { return start_time_ + (simulation_ ? simulation_->time() : 0); }
+double Instance::time() const { return start_time_ + (simulation_ ? flown_time() : 0); }
+
+double Instance::flown_time() const {
+  return simulation_->time() - simulation_->world().start_time;
+}
 
 const Variable& Instance::variable(unsigned reference, Variable::Type type) const {
   if (reference >= file_.variables.size()) {

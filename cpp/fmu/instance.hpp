@@ -55,6 +55,8 @@ class Instance {
   /// Return whether an input message is relevant. Before the first step, some importers set all
   /// inputs to their start values, which is relevant only for speeds.
   bool is_said(const std::string& topic, const Waiting& message) const;
+  /// Return the time since the start of the flight [s]; a saved world does not start at 0.
+  double flown_time() const;
 
   const FlightFile file_;
   Settings settings_;

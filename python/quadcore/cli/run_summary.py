@@ -25,12 +25,13 @@ def summarize(
     errors: Optional[TrackingError],
 ) -> Dict[str, Any]:
     """Collect the result in plain values, by name."""
-    steps = round(simulation.time / simulation.dt)
+    duration = simulation.time - simulation.world.start_time
+    steps = round(duration / simulation.dt)
     size = per_command(simulation)
     result: Dict[str, Any] = {
         "model": simulation.model.name,
         "engine": simulation.engine,
-        "duration": simulation.time,
+        "duration": duration,
         "steps": steps,
         "steps_per_second": steps / elapsed,
         "final_position": _round(simulation.state.position, 9),
