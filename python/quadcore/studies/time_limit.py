@@ -78,11 +78,12 @@ def _alarm(seconds: float, expired: List[bool]) -> Iterator[None]:
 
     before = signal.signal(signal.SIGALRM, end)
     with open(os.devnull, "wb") as nowhere:
+        if _report is not None:
+            _report.seek(0)
+            _report.truncate()
+            _report.write(f"{seconds:g}\n".encode())
+            _report.flush()
         file = nowhere if _report is None else _report
-        file.seek(0)
-        file.truncate()
-        file.write(f"{seconds:g}\n".encode())
-        file.flush()
         faulthandler.dump_traceback_later(seconds + _PATIENCE, exit=True, file=file)
         signal.setitimer(signal.ITIMER_REAL, seconds, _AGAIN)
         try:
