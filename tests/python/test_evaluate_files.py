@@ -53,9 +53,9 @@ def test_the_page_says_why_the_printed_gains_are_lost(capsys):
     page = Path("out/report.html").read_text()
     told = page + capsys.readouterr().out
     for text in (
-        "pid_thesis (eigen), x, y: pole at 0.27 +- 1.63i 1/s; cause: Kd Kp = 0.3 is not above Ki",
-        "pid_thesis (eigen), yaw: pole at 10.4 +- 11.3i 1/s; cause: the zero at 2 b w0 sim_slow",
-        "pid_thesis:kd_xy=2.5 (eigen), yaw: pole at 10.4 +- 11.3i 1/s; cause: the zero at 2 b w0",
+        "pid_thesis (eigen), x, y: pole at 0.231 +- 1.63i 1/s; cause: Kd Kp = 0.3 is not above Ki",
+        "pid_thesis (eigen), yaw: pole at 10.4 +- 11.4i 1/s; cause: the zero at 2 b w0 sim_slow",
+        "pid_thesis:kd_xy=2.5 (eigen), yaw: pole at 10.4 +- 11.4i 1/s; cause: the zero at 2 b w0",
     ):
         assert text in page
         assert told.count(text) == 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,17 +15,23 @@ from vehicles import plugin, vehicle
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.control import controllers
-from quadcore.studies.evaluate.margins import ENDS, MarginSearch, format_margin
+from quadcore.studies.evaluate.margins import (
+    ENDS,
+    NOT_DECAYED,
+    MarginSearch,
+    format_margin,
+    is_lost,
+)
 from quadcore.studies.evaluate.plan import Plan
 from quadcore.studies.evaluate.trial import Trial, list_missing_effects
-from quadcore.studies.measured_flight import NAN, Outcome
+from quadcore.studies.measured_flight import NAN, Outcome, fly_and_measure
 from quadcore.studies.options import EvaluateOptions
 
 
 def test_margins_are_found(capsys):
     found = evaluate(
         ["geometric", lambda t, state, reference: [471, -471, 471, -471]], "circle",
-        duration=4, margins=True,
+        duration=2, margins=True,
     )  # fmt: skip
     first, own = found.margins
     assert first["gain_low"] < 0.8 < 1.3 < first["gain_high"]
@@ -50,11 +57,22 @@ class Own:
         return self._law(t, state, reference)
 
 
-def test_margins_of_an_own_law_mean_what_those_of_a_shipped_one_mean():
-    found = evaluate(["geometric", Own()], "circle", duration=1, margins=True)
-    shipped, own = found.margins
-    for name in (*ENDS, "box_median", "box_worst"):
-        assert own[name] == pytest.approx(shipped[name], rel=1e-6), name
+@pytest.mark.parametrize("change", [{"thrust": 1.5}, {"delay": 0.01}, {"thrust": 0.9, "lag": 1.3}])
+@pytest.mark.parametrize("kicked", [False, True])
+def test_trials_of_an_own_law_mean_what_those_of_a_shipped_one_mean(change, kicked):
+    plan = Plan({"shipped": "geometric", "own": Own()}, "circle", ["eigen"], ["quadrotor"], {},
+                options_of(1))  # fmt: skip
+    shipped, own = (
+        fly_and_measure(partial(Trial(row, kicked=kicked, **change).make_plan, plan), 60)
+        for row in range(2)
+    )
+    assert own.measures["rms_position"] == pytest.approx(shipped.measures["rms_position"], rel=1e-6)
+
+
+def test_a_flight_too_short_to_judge_a_disturbance_has_no_margins():
+    (row,) = evaluate("geometric", "circle", duration=0.2, margins=True).margins
+    assert row["failure"] == NOT_DECAYED
+    assert np.isnan([row[name] for name in ENDS]).all()
 
 
 def thrust_of(simulation):
@@ -151,7 +169,7 @@ def test_effects_that_no_tag_scales_are_named_on_the_terminal_and_on_the_page(
     model.write_text(with_plugins(vehicle(mass=1), plugin("own_motor", {}), plugin("odometry", {})))
     told = f"margins: no tag of '{model}' scales its drag and its lag. box is not searched."
     out = tmp_path / "out"
-    command = "evaluate --controller geometric --reference hover --duration 0.1 --margins"
+    command = "evaluate --controller geometric --reference hover --duration 1 --margins"
     assert main([*command.split(), "--model", str(model), "--out", str(out)]) == 0
     assert f"warning: {told}\n" in capsys.readouterr().err
     assert told in (out / "report.html").read_text().replace("&#39;", "'")
@@ -176,6 +194,38 @@ def test_the_search_finds_the_edge():
     assert row["delay_margin"] == pytest.approx(0.1, abs=0.002)
     assert np.isnan(row["box_worst"])  # no tag says the drag
     assert row["failure"] == ""
+
+
+def test_the_first_loss_counts_however_soon_flights_succeed_again():
+    def lost_for_a_while(trials):
+        return [Outcome("lost" if 0.0285 < t.delay < 0.0295 else "", NAN) for t in trials]
+
+    searches = MarginSearch(["one"], [])
+    searches.run(lost_for_a_while)
+    assert searches.list_rows()[0]["delay_margin"] == pytest.approx(0.0285, abs=6e-4)
+
+
+@pytest.mark.parametrize("duration", [10, 30])
+def test_the_delay_margin_in_hover_is_the_linear_one_however_long_the_flight(duration):
+    plan = Plan("pd", "hover", ["eigen"], ["quadrotor"], {}, options_of(duration))
+    found = evaluate("pd", "hover", duration=1.0)
+    linear = min(row["delay_margin"] for row in found.poles)
+
+    def is_lost_after(delay):
+        pair = [Trial(0, delay=delay, kicked=kicked) for kicked in (False, True)]
+        made = [partial(each.make_plan, plan) for each in pair]
+        return is_lost(*(fly_and_measure(each, 60, watch=True) for each in made))
+
+    delays = np.arange(0.033, 0.038, 0.001)
+    lost = [is_lost_after(delay) for delay in delays]
+    first = delays[lost.index(True)]
+    assert lost == (delays >= first).tolist()
+    assert first - 0.001 <= 0.035 < first  # the same for both durations
+    assert linear == pytest.approx(0.0353, abs=1e-4)
+
+
+def options_of(duration):
+    return EvaluateOptions(duration=float(duration), xacro_args={"sim_slow": 1})
 
 
 def test_an_interrupted_search_says_so():

@@ -10,6 +10,8 @@ from quadcore.control import controllers
 from quadcore.simulation.simulation import make_simulation
 from quadcore.studies.evaluate.poles import compute_poles, format_poles, has_poles, read_gains
 
+NO_DRAG = {f"drone_plugin.{kind}DragCoeff": 0 for kind in ("induced", "translational", "profile")}
+
 
 def by_axis(law, engine="eigen", slow=1, **parameters):
     simulation = make_simulation(engine, xacro_args={"sim_slow": slow}, parameters=parameters)
@@ -40,17 +42,89 @@ def test_the_printed_gains_are_unstable_in_x_and_y_everywhere_and_in_yaw_at_sim_
         assert found["roll, pitch"]["stable"]
         assert found["yaw"]["stable"] == ((engine, slow) != ("eigen", 1))
     assert all(row["stable"] for row in by_axis(controllers.pid()).values())
-    assert format_poles(by_axis(controllers.pid_thesis())["x, y"], 1) == "0.27 +- 1.63i"
+    assert format_poles(by_axis(controllers.pid_thesis())["x, y"], 1) == "0.231 +- 1.63i"
 
 
 def test_motors_without_lag_leave_the_polynomial_of_routh_and_hurwitz():
     """Around an ideal inner loop x and y are s^3 + Kd s^2 + Kp s + Ki."""
     fast = {"kp_rp": 1e5, "kd_rp": 6e2, "ki_rp": 0}
-    found = by_axis(controllers.pid_thesis(**fast), **{"motorpid_plugin.kp": 0.07})["x, y"]["poles"]
+    law = controllers.pid_thesis(**fast)
+    found = by_axis(law, **{**NO_DRAG, "motorpid_plugin.kp": 0.07})["x, y"]["poles"]
     slow = [pole for pole in found if abs(pole) < 10]
     expected = np.roots([1, 0.125, 2.4, 0.8])
     for pole in expected:
         assert min(abs(pole - other) for other in slow) < 1e-2
+
+
+def to_numbers(state):
+    """A state near hover as 12 + n numbers."""
+    turn = 2 * state.orientation[:3] * np.sign(state.orientation[3])
+    parts = state.position, turn, state.linear_velocity, state.angular_velocity
+    return np.concatenate([*parts, state.rotor_velocity])
+
+
+def from_numbers(start, changes):
+    state = start.copy()
+    turn = changes[3:6] / 2
+    state.position += changes[:3]
+    state.orientation[:] = *turn, np.sqrt(1 - turn @ turn)
+    state.linear_velocity += changes[6:9]
+    state.angular_velocity += changes[9:12]
+    state.rotor_velocity += changes[12:]
+    return state
+
+
+def linearise_flight(law, slow, span=0.02):
+    """Poles of plant and controller, from flights of a short span that begin beside a hover."""
+    simulation = qc.Simulation(engine="eigen", dt=1e-4, xacro_args={"sim_slow": slow})
+    hover = qc.references.hover()
+    start = qc.references.start(simulation, hover)
+    steps = np.repeat([1e-5, 1e-5, 1e-5, 1e-5, 1e-3], [3, 3, 3, 3, 4])
+    columns = []
+    for step in np.diag(steps):
+        ends = []
+        for sign in (1, -1):
+            simulation.reset(0)
+            simulation.set_state(from_numbers(start, sign * step))
+            simulation.run(span, controller=law, reference=hover, log_every=100)
+            ends.append(to_numbers(simulation.state))
+        columns.append((ends[0] - ends[1]) / (2 * step.sum()))
+    return np.log(np.linalg.eigvals(np.column_stack(columns)).astype(complex)) / span
+
+
+@pytest.mark.parametrize("slow", [1, 10])
+@pytest.mark.parametrize("name", ["pd", "pd_compensated"])
+def test_poles_are_those_of_the_linearised_flight_with_drag(name, slow):
+    law = getattr(controllers, name)(rate=10_000)
+    flown = linearise_flight(law, slow)
+    found = by_axis(law, slow=slow)
+    expected = [pole for axis in ("x, y", "z", "yaw") for pole in found[axis]["poles"]]
+    assert len(expected) == 11
+    for pole in expected:
+        assert np.abs(flown - pole).min() < 0.02 * abs(pole), pole
+
+
+def test_without_drag_poles_are_those_of_the_closed_form():
+    gains = read_gains(controllers.pid())
+    lag = 2.8125e-5 / 0.0005  # I_R/k_p
+    roll = [lag, 1, gains["kd_rp"], gains["kp_rp"], gains["ki_rp"]]
+    found = by_axis(controllers.pid(), **NO_DRAG)
+    assert np.sort_complex(found["roll, pitch"]["poles"]) == pytest.approx(
+        np.sort_complex(np.roots(roll)), rel=1e-6
+    )
+
+
+def test_the_linear_delay_margin_is_where_the_loop_with_delay_has_a_pole_on_the_axis():
+    law = controllers.pd(rate=1e6)
+    row = by_axis(law)["z"]
+    gains = read_gains(law)
+    lag, delay = 2.8125e-5 / 0.0005, row["delay_margin"]
+
+    def loop(s):
+        return (gains["kd_z"] * s + gains["kp_z"]) * np.exp(-s * delay) / (s**2 * (lag * s + 1))
+
+    frequencies = 1j * np.linspace(1, 30, 100_000)
+    assert np.abs(1 + loop(frequencies)).min() < 1e-3
 
 
 def test_the_yaw_grows_in_flight_as_its_pole_says():

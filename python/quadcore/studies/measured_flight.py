@@ -55,6 +55,8 @@ class Outcome(NamedTuple):
     """Limit of the joint speeds, rad/s."""
     vehicle: Optional[DrawnVehicle] = None
     """Shapes of the vehicle, if kept."""
+    motion: Optional[np.ndarray] = None
+    """Velocity (m/s) and angular velocity (rad/s) of a decimated log, if watched; (rows, 6)."""
     refused: bool = False
     """Whether the input was invalid and the flight did not run."""
 
@@ -70,7 +72,11 @@ class Outcome(NamedTuple):
 
 
 def fly_and_measure(
-    described: Callable[[], FlightPlan], most: float, keep: bool = False, timed: bool = True
+    described: Callable[[], FlightPlan],
+    most: float,
+    keep: bool = False,
+    timed: bool = True,
+    watch: bool = False,
 ) -> Outcome:
     """Simulate a flight and compute its metrics.
 
@@ -84,6 +90,8 @@ def fly_and_measure(
         Whether to keep a decimated log.
     timed
         Whether to time each update of the controller, which slows the flight.
+    watch
+        Whether to keep the motion.
 
     Raises
     ------
@@ -128,6 +136,10 @@ def fly_and_measure(
         pilot.delay,
         list(simulation.warnings),
     )
+    if watch:
+        few = decimate(log)
+        motion = np.hstack([few.linear_velocity, few.angular_velocity])
+        outcome = outcome._replace(motion=motion)
     if not keep:
         return outcome
     response = None if failure else step_response(log)

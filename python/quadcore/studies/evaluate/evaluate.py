@@ -200,7 +200,8 @@ class _Flights:
 
     def _fly_trials(self, trials: Sequence[Trial]) -> List[Outcome]:
         outcomes = [Outcome()] * len(trials)
-        self._fly_all([partial(trial.make_plan, self._plan) for trial in trials], outcomes)
+        flights = [partial(trial.make_plan, self._plan) for trial in trials]
+        self._fly_all(flights, outcomes, watch=True)
         return outcomes
 
     def _fly_all(
@@ -208,14 +209,15 @@ class _Flights:
         flights: Sequence[Callable[[], FlightPlan]],
         outcomes: List[Outcome],
         drawn: Collection[int] = (),
+        watch: bool = False,
     ) -> None:
-        """Simulate flights; those in `drawn` keep their logs."""
+        """Simulate flights; those in `drawn` keep their logs, and all their motion if watched."""
         options = self._plan.options
         expected = len(self._plan) + (self._searches.expected if self._searches else 0)
         total = max(self._done + len(flights), expected)
 
         def fly(i: int) -> Outcome:
-            return fly_and_measure(flights[i], options.time_limit, i in drawn)
+            return fly_and_measure(flights[i], options.time_limit, i in drawn, watch=watch)
 
         def take(i: int, outcome: Union[Outcome, QuadcoreError]) -> None:
             if isinstance(outcome, QuadcoreError):

@@ -1,5 +1,9 @@
 """Margins of a controller: gain, delay, update rate, and model errors.
 
+Gain and delay are scanned from the nominal value outwards; the first loss is the margin. Each value
+is simulated twice, with and without an initial disturbance (`KICK`). It is lost if a flight fails,
+or if the difference of both flights does not decay: a vehicle in equilibrium shows no instability.
+
 The controller has the nominal model of the vehicle, while thrust, drag and motor lag of the
 simulated vehicle are scaled. Built-in controllers receive the nominal model directly, user-defined
 ones in `reset`.
@@ -28,7 +32,7 @@ import numpy as np
 
 from ..measured_flight import Outcome
 from ..table import NOT_FLOWN
-from .trial import Trial
+from .trial import KICK, Trial
 
 LARGEST_GAIN = 10.0
 LARGEST_DELAY = 0.5  # s
@@ -40,10 +44,22 @@ BOX = {"thrust": 0.1, "drag": 0.5, "lag": 0.3}
 
 NAMES = (*ENDS, *(f"rms_at_{rate:g}_Hz" for rate in RATES), "box_median", "box_worst")
 
-_STEPS = 7  # per bisection: 2 % of a gain, 1 % of the range of the delay
+_GAINS = 24  # steps of a scan to the end of the range: 10 % each
+_GAIN_WIDTH = 0.015  # relative, of the last interval
+_FINE = 0.001  # s; steps of a scan of the delay
+_FINE_UNTIL = 0.05  # s
+_COARSE = 0.05  # relative; steps beyond
+_DELAY_WIDTH = 5e-4  # s, of the last interval
+_ROUND = 6  # values of a scan that are simulated together
 _SAMPLES = 16  # random points in the box
-_FIRST_DELAY = 0.004  # s
-_TRIALS = 60  # per controller, about
+_TRIALS = 120  # per controller, about
+NOT_DECAYED = (
+    "the initial disturbance does not decay in the nominal flight. Use a stable controller and a "
+    "longer duration."
+)
+"""Reason for a controller without margins."""
+
+_DECAYED = 0.05  # of the initial disturbance; less is rounding noise of the controller
 _METRIC = "rms_position"
 
 Found = Dict[str, float]
@@ -78,12 +94,17 @@ class MarginSearch:
     def run(self, fly: Fly) -> None:
         """Run all searches in parallel; `fly` simulates the trials of each round."""
         running: List[Tuple[int, Search]] = []
-        as_it_is = self._fly_new(fly, [Trial(row) for row in range(len(self._rows))])
-        for trial, outcome in as_it_is.items():
-            if outcome.flew:
-                running += [(trial.controller, kind(trial)) for kind in self._kinds]
+        own = [Trial(row) for row in range(len(self._rows))]
+        self._fly_new(fly, [*own, *(trial._replace(kicked=True) for trial in own)])
+        for trial in own:
+            pair = self._done[trial], self._done[trial._replace(kicked=True)]
+            failure = pair[0].failure or pair[1].failure
+            if not failure and is_lost(*pair):
+                failure = NOT_DECAYED
+            if failure:
+                self._rows[trial.controller]["failure"] = failure
             else:
-                self._rows[trial.controller]["failure"] = outcome.failure
+                running += [(trial.controller, kind(trial)) for kind in self._kinds]
         asked = [(row, search, next(search)) for row, search in running]
         while asked:
             self._fly_new(fly, [trial for *_, trials in asked for trial in trials])
@@ -109,40 +130,69 @@ class MarginSearch:
 
 
 def _search_gain(own: Trial) -> Search:
-    """Find the range of scaling of thrust and torque without failure."""
+    """Find the range of scaling of thrust and torque without loss."""
 
     def at(logarithm: float) -> Trial:
         return own._replace(thrust=math.exp(logarithm))
 
     found = {}
     for name in ("gain_low", "gain_high"):
-        end = math.log(ENDS[name])
-        if (yield from _try_flight(at(end))):
-            found[name] = ENDS[name]
-        else:
-            found[name] = math.exp((yield from _bisect(at, 0.0, end)))
+        scan = np.linspace(0, math.log(ENDS[name]), _GAINS + 1)[1:].tolist()
+        end = yield from _find_first_loss(at, scan, _GAIN_WIDTH)
+        found[name] = ENDS[name] if end == scan[-1] else math.exp(end)
     return found
 
 
-def _bisect(at: Callable[[float], Trial], good: float, bad: float) -> Generator[Any, Any, float]:
-    for _ in range(_STEPS):
+def _search_delay(own: Trial) -> Search:
+    """Find the additional delay at which the first loss occurs, s."""
+    scan = [_FINE]
+    while scan[-1] < LARGEST_DELAY:
+        step = _FINE if scan[-1] < _FINE_UNTIL else _COARSE * scan[-1]
+        scan.append(min(scan[-1] + step, LARGEST_DELAY))
+    found = yield from _find_first_loss(lambda delay: own._replace(delay=delay), scan, _DELAY_WIDTH)
+    return {"delay_margin": found}
+
+
+def _find_first_loss(
+    at: Callable[[float], Trial], scan: Sequence[float], width: float
+) -> Generator[List[Trial], List[Outcome], float]:
+    """Return the last value before the first loss of a scan from 0; the last one without a loss."""
+    good, bad = 0.0, math.nan
+    for start in range(0, len(scan), _ROUND):
+        values = scan[start : start + _ROUND]
+        lost = yield from _judge([at(value) for value in values])
+        if any(lost):
+            first = lost.index(True)
+            good, bad = ([good, *values][first], values[first])
+            break
+        good = values[-1]
+    while abs(bad - good) > width:
         middle = (good + bad) / 2
-        good, bad = (middle, bad) if (yield from _try_flight(at(middle))) else (good, middle)
+        (is_lost,) = yield from _judge([at(middle)])
+        good, bad = (good, middle) if is_lost else (middle, bad)
     return good
 
 
-def _search_delay(own: Trial) -> Search:
-    """Find the maximum additional delay without failure, s."""
+def _judge(trials: Sequence[Trial]) -> Generator[List[Trial], List[Outcome], List[bool]]:
+    """Find which trials are lost."""
+    outcomes = yield [each._replace(kicked=kicked) for each in trials for kicked in (False, True)]
+    return [is_lost(*pair) for pair in zip(outcomes[::2], outcomes[1::2])]
 
-    def at(delay: float) -> Trial:
-        return own._replace(delay=delay)
 
-    good, bad = 0.0, _FIRST_DELAY
-    while (yield from _try_flight(at(bad))):
-        if bad == LARGEST_DELAY:
-            return {"delay_margin": bad}
-        good, bad = bad, min(2 * bad, LARGEST_DELAY)
-    return {"delay_margin": (yield from _bisect(at, good, bad))}
+def is_lost(plain: Outcome, kicked: Outcome) -> bool:
+    """Whether a flight without or with the initial disturbance fails, or its effect does not decay.
+
+    Velocities and angular velocities are judged apart. The effect must decay from the third to the
+    last quarter of the flight, and lie below that in the first quarter.
+    """
+    if not (plain.flew and kicked.flew):
+        return True
+    if plain.motion is None or kicked.motion is None:
+        return False
+    effect = (kicked.motion - plain.motion).reshape(-1, 2, 3)
+    quarters = np.array_split(np.linalg.norm(effect, axis=2), 4)
+    first, _, third, last = (np.sqrt((part**2).mean(axis=0)) for part in quarters)
+    return bool(np.any((last > np.minimum(first, third)) & (last > _DECAYED * KICK)))
 
 
 def _sweep_rates(own: Trial) -> Search:
@@ -190,11 +240,6 @@ def describe_omitted(model: str, lacking: Collection[str]) -> str:
         f"margins: no tag of '{model}' scales its {' and its '.join(lacking)}. "
         f"{' and '.join(left_out)} {verb} not searched."
     )
-
-
-def _try_flight(trial: Trial) -> Generator[List[Trial], List[Outcome], bool]:
-    (outcome,) = yield [trial]
-    return outcome.flew
 
 
 def format_margin(row: Mapping[str, Any], name: str, number: Callable[[float], str]) -> str:

@@ -187,7 +187,10 @@ def _make_content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
             {
                 **row,
                 "poles": [[pole.real, pole.imag] for pole in row["poles"]],
-                "zero": None if math.isinf(row["zero"]) else row["zero"],
+                **{
+                    name: row[name] if math.isfinite(row[name]) else None
+                    for name in ("zero", "delay_margin")
+                },
             }
             for row in evaluation.poles
         ],
@@ -247,7 +250,10 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
             {
                 **row,
                 "poles": poles_text(row),
-                "zero": "" if math.isinf(row["zero"]) else f"{row['zero']:.3g}",
+                **{
+                    name: f"{row[name]:.3g}" if math.isfinite(row[name]) else ""
+                    for name in ("zero", "delay_margin")
+                },
             }
             for row in evaluation.poles
         ],

@@ -1,15 +1,18 @@
-"""Poles of the cascaded controllers on a vehicle in hover.
+"""Poles and linear margins of the cascaded controllers on a vehicle in hover.
 
-Around hover the axes are decoupled. The rotors follow commands as 1/(tau s + 1), tau = I_R/k_p. An
-angle follows the command of the outer loop through a PID; its derivative acts on the measured rate,
+Around hover the axes are decoupled. The rotors follow commands as 1/(tau s + 1), tau = I_R/k_p, or
+the controller's lead time. An angle follows the command of the outer loop through a PID; its
+derivative acts on the measured rate. Without air drag,
 
     phi/phi_d = (k_p s + k_i) / (s^3 (tau s + 1) + k_d s^2 + k_p s + k_i),
 
-and tilts the thrust, which moves the vehicle in the loop of the position PID. In yaw, two torques
-act together: the aerodynamic torque b w^2 on the rotors, and the reaction I_R dw/dt to their
-acceleration. Chapter 2 omits the latter, which adds (1 - s/z), z = 2 b w_0 sim_slow / I_R. For
-b > 0 the zero lies in the right half-plane: the vehicle first yaws in the wrong direction. Rotor
-drag is neglected.
+and the angle tilts the thrust, which moves the vehicle in the loop of the position PID. In yaw, two
+torques act together: the aerodynamic torque b w^2 on the rotors, and the reaction I_R dw/dt to
+their acceleration. Chapter 2 omits the latter, which adds (1 - s/z), z = 2 b w_0 sim_slow / I_R.
+For b > 0 the zero lies in the right half-plane: the vehicle first yaws in the wrong direction.
+
+The drag of the air adds a wrench that is linear in the twist of the vehicle, about its centre of
+mass. Controllers that compensate drag subtract the same wrench, from the measured twist.
 """
 
 from __future__ import annotations
@@ -23,8 +26,7 @@ from ... import _core
 from ...control.built_in import BuiltInController
 from ...simulation.engines import exerts_wrenches
 from ...simulation.simulation import Simulation
-
-Polynomial = np.ndarray
+from .linear_loops import Loop, make_loops, make_yaw, measure_drag
 
 
 def read_gains(law: BuiltInController) -> Dict[str, float]:
@@ -45,20 +47,22 @@ def has_poles(law: Any) -> bool:
 
 
 def compute_poles(law: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]]:
-    """Compute the poles of each axis.
+    """Compute poles and delay margin of each axis.
 
     Parameters
     ----------
     law
         Controller for which `has_poles` is true.
     simulation
-        Vehicle and engine.
+        Vehicle and engine; its state changes.
 
     Returns
     -------
     list of dict
         Row per axis: ``axis``, ``poles`` (complex, 1/s), ``zero`` (1/s, infinite without one),
-        ``stable``, and ``because``, the cause of instability.
+        ``stable``, and ``because``, the cause of instability. ``delay_margin`` (s) is the linear
+        delay margin at the input of the motors beyond the controller's own delay and half its
+        period; NaN if unstable.
 
     Raises
     ------
@@ -69,32 +73,28 @@ def compute_poles(law: BuiltInController, simulation: Simulation) -> List[Dict[s
 
     gains, vehicle = read_gains(law), Vehicle.of(simulation)
     inertia = float(np.mean(vehicle.rotor_inertia))
-    lag = np.array([inertia / vehicle.motor_gain, 1.0])
+    lag = inertia / vehicle.motor_gain
+    drag = measure_drag(simulation) if exerts_wrenches(simulation.engine) else vehicle.linear_drag
     zero = math.inf
     if exerts_wrenches(simulation.engine):
         weight = vehicle.mass * float(np.linalg.norm(vehicle.gravity))
         hover = math.sqrt(weight / (len(vehicle.arms) * vehicle.k))
         zero = 2 * vehicle.b * hover * vehicle.slow / inertia
-    roll = _pid_polynomial(gains, "rp")
-    tilt = np.polyadd(np.polymul([1, 0, 0, 0], lag), roll)  # of phi/phi_d above, and its numerator
-    answer = roll[1:]
-    side = np.polyadd(
-        np.polymul([1, 0, 0, 0], tilt), np.polymul(_pid_polynomial(gains, "xy"), answer)
-    )
-    height = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid_polynomial(gains, "z"))
-    turned = np.polymul([-1 / zero, 1.0], _pid_polynomial(gains, "yaw"))
-    yaw = np.polyadd(np.polymul([1, 0, 0, 0], lag), turned)
-    without = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid_polynomial(gains, "yaw"))
+    if gains["lead"]:
+        lag = min(lag, gains["lead_time"])
+    loops = make_loops(gains, vehicle, drag, lag)
+    loops["yaw"] = make_yaw(gains, vehicle, drag, lag, zero)
+    without = make_yaw(gains, vehicle, drag, lag, math.inf).find_poles()
+    causes = {"x, y": _explain_xy(gains), "yaw": _explain_yaw(zero, without)}
+    known = law.delay + 0.5 / law.rate
     return [
-        _make_row("x, y", side, math.inf, _explain_xy(gains)),
-        _make_row("z", height, math.inf, ""),
-        _make_row("roll, pitch", tilt, math.inf, ""),
-        _make_row("yaw", yaw, zero, _explain_yaw(zero, _find_roots(without))),
+        _make_row(axis, loop, zero if axis == "yaw" else math.inf, causes.get(axis, ""), known)
+        for axis, loop in loops.items()
     ]
 
 
 def _explain_xy(gains: Dict[str, float]) -> str:
-    d, p, i = _pid_polynomial(gains, "xy")
+    d, p, i = (gains["scale"] * gains[f"k{part}_xy"] for part in "dpi")
     if d * p > i:
         return "the inner loop is too slow for the outer one"
     return (
@@ -112,27 +112,17 @@ def _explain_yaw(zero: float, without: np.ndarray) -> str:
     )
 
 
-def _pid_polynomial(gains: Dict[str, float], axis: str) -> Polynomial:
-    """Return the coefficients of k_d s^2 + k_p s + k_i."""
-    return gains["scale"] * np.array([gains[f"k{part}_{axis}"] for part in "dpi"])
-
-
-def _make_row(axis: str, polynomial: Polynomial, zero: float, cause: str) -> Dict[str, Any]:
-    roots = _find_roots(polynomial)
-    stable = bool(np.all(roots.real < 0))
+def _make_row(axis: str, loop: Loop, zero: float, cause: str, delay: float) -> Dict[str, Any]:
+    poles = loop.find_poles()
+    stable = bool(np.all(poles.real < 0))
     return {
         "axis": axis,
-        "poles": [complex(root) for root in roots[np.lexsort((roots.imag, -roots.real))]],
+        "poles": [complex(pole) for pole in poles[np.lexsort((poles.imag, -poles.real))]],
         "zero": zero,
         "stable": stable,
         "because": "" if stable else cause,
+        "delay_margin": loop.find_delay_margin() - delay if stable else math.nan,
     }
-
-
-def _find_roots(polynomial: Polynomial) -> np.ndarray:
-    # A gain of 0 leaves an unexcited pole at 0.
-    roots: np.ndarray = np.roots(np.trim_zeros(polynomial))
-    return roots
 
 
 def format_poles(row: Dict[str, Any], count: int = 3) -> str:

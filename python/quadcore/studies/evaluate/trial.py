@@ -1,8 +1,8 @@
-"""Flights of the margin search: scaled vehicle, delay or update rate."""
+"""Flights of the margin search: scaled vehicle, delay or update rate, and initial disturbance."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..._core import ParameterInfo, parse_number
@@ -15,6 +15,10 @@ from ..cases import Case, Cases
 
 EFFECTS = ("thrust", "drag", "lag")
 """Effects that tags scale, as named in the tables of tags."""
+
+
+KICK = 0.1
+"""Initial disturbance: change of each component of the velocity (m/s) and of the rates (rad/s)."""
 
 
 class Trial(NamedTuple):
@@ -31,10 +35,16 @@ class Trial(NamedTuple):
     drag: float = 1.0
     lag: float = 1.0
     """Factor of the time constant of the motors."""
+    kicked: bool = False
+    """Whether the flight starts with the disturbance `KICK`."""
 
     def make_plan(self, plan: Cases) -> FlightPlan:
         """Make the plan of the flight; errors of the controller pass through."""
         flight = plan.make_plan(Case(self.controller))
+        if self.kicked:
+            flight = _KickedPlan(
+                **{each.name: getattr(flight, each.name) for each in fields(flight)}
+            )
         controller = flight.controller
         if self.rate is not None:
             set_parameter(controller, "rate", self.rate)
@@ -59,6 +69,19 @@ class Trial(NamedTuple):
             key: repr(number * getattr(self, tag.effect) ** tag.power)
             for key, tag, number in _scaling_tags(simulation)
         }
+
+
+@dataclass(frozen=True, eq=False)
+class _KickedPlan(FlightPlan):
+    """Plan of a flight with an initial disturbance."""
+
+    def simulation(self) -> Simulation:
+        simulation = super().simulation()
+        state = simulation.state.copy()
+        state.linear_velocity += KICK
+        state.angular_velocity += KICK
+        simulation.set_state(state)
+        return simulation
 
 
 def list_missing_effects(simulation: Simulation) -> List[str]:

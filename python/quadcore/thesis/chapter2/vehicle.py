@@ -158,6 +158,12 @@ class Vehicle:
         return drag
 
     @property
+    def linear_drag(self) -> np.ndarray:
+        """Drag (2.28)-(2.30) of all rotors: `disc_drag` times the sum of the coefficients."""
+        drag: np.ndarray = (self.K_I + self.K_T + self.K_P) * self.disc_drag
+        return drag
+
+    @property
     def flaps(self) -> bool:
         """Whether any coefficient of blade flapping is set."""
         return any((self.A_1c, self.A_1s, self.B_1, self.B_2))
