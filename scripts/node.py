@@ -37,3 +37,4 @@ def install_packages(folder: Path) -> None:
     environment = {**os.environ, "PATH": path, "NODE_USE_SYSTEM_CA": "1"}
     if subprocess.run([*npm, "ci", *options], cwd=folder, env=environment).returncode:
         sys.exit(f"quadcore: npm could not install the packages of {folder}/package.json.")
+    os.utime(installed)  # npm gives it the time of the newest package

@@ -51,6 +51,7 @@ from .thesis import LAGRANGE, LAGRANGE_SUMMARY
 if TYPE_CHECKING:
     from .fmu.export import export_fmu
     from .simulation.flight_plan import FlightPlan
+    from .simulation.view import View, view
     from .studies.compare.compare import compare
     from .studies.compare.result import Comparison
     from .studies.evaluate.evaluate import Evaluation, evaluate
@@ -88,6 +89,7 @@ __all__ = [
     "State",
     "Sweep",
     "Vehicle",
+    "View",
     "World",
     "WrenchThrust",
     "__version__",
@@ -106,6 +108,7 @@ __all__ = [
     "references",
     "sweep",
     "tune",
+    "view",
 ]
 
 _LATE = {
@@ -114,12 +117,14 @@ _LATE = {
     "Fit": "studies.fit.fit",
     "FlightPlan": "simulation.flight_plan",
     "Sweep": "studies.sweep.sweep",
+    "View": "simulation.view",
     "compare": "studies.compare.compare",
     "evaluate": "studies.evaluate.evaluate",
     "export_fmu": "fmu.export",
     "fit": "studies.fit.fit",
     "sweep": "studies.sweep.sweep",
     "tune": "studies.tune.tune",
+    "view": "simulation.view",
 }
 """Modules of the names that are imported at first use, because a single flight needs none."""
 

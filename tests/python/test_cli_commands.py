@@ -169,7 +169,7 @@ def test_commands_options_and_names_are_completed(line, word):
 def test_play_and_plot_take_folders_that_run_wrote(capsys):
     for model in ("quadrotor", "hexarotor"):
         main([HOVER[0], model, *HOVER[2:], "--controller", "geometric", "--out", f"out/{model}"])
-    assert printed(capsys, "play", "out/quadrotor") == "written out/quadrotor/play.html\n"
+    assert printed(capsys, "play", "out/quadrotor", "-o", "one.html") == "written one.html\n"
     # The rotors are those of each vehicle.
     main(["play", "out/quadrotor", "out/hexarotor", "-o", "both.html"])
     page = Path("both.html").read_text()
@@ -188,7 +188,8 @@ def test_play_and_plot_take_folders_that_run_wrote(capsys):
 def test_play_takes_folders_of_comparisons(capsys):
     vary = ["--vary", "frame.mass=1,1.1", "--duration", "0.05", "--quiet", "--no-plots"]
     main(["compare", "quadrotor", *vary, "--controller", "geometric", "--out", "out"])
-    assert printed(capsys, "play", "out", "--names", "a,b") == "written out/logs/play.html\n"
+    words = ("play", "out", "--names", "a,b", "-o", "page.html")
+    assert printed(capsys, *words) == "written page.html\n"
 
 
 def test_a_log_is_not_played_with_the_model_of_another_vehicle(capsys):
@@ -196,7 +197,7 @@ def test_a_log_is_not_played_with_the_model_of_another_vehicle(capsys):
     for log in ("out", "out/log.csv"):
         error = refusal(capsys, "play", log, "--model", "iris")
         assert "is a flight of 'quadrotor', but --model iris is 'iris'. Leave --model out" in error
-    assert main(["play", "out", "--model", "quadrotor"]) == 0
+    assert main(["play", "out", "--model", "quadrotor", "-o", "page.html"]) == 0
     Path("out/run.json").write_text("{")
     assert "out/run.json: is not JSON" in refusal(capsys, "play", "out")
 
@@ -210,7 +211,7 @@ def test_run_describes_the_flight_in_its_folder():
     assert {"quadcore", "date", "host", "arguments"} <= set(found)
     assert qc.Simulation("out/model.urdf").mass == qc.Simulation(parameters={"frame.mass": 2}).mass
     page = Path("out/report.html").read_text()
-    assert "--seed 3 --world basic" in page and "Tracking error" in page and "<canvas" in page
+    assert "--seed 3 --world basic" in page and "Tracking error" in page and "quadcore-player" in page
 
 
 @pytest.mark.parametrize(

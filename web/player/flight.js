@@ -64,12 +64,11 @@ export class Flight {
   get begin() { return this.rows ? this.columns.time.values[0] : 0; }
   get end() { return this.rows ? this.columns.time.values[this.rows - 1] : 0; }
 
-  /** Append rows of a flight that still goes on; each has all columns in order. */
+  /** Append rows of a flight that still goes on; each has the columns in `order`. */
   append(rows) {
     for (const row of rows) {
       let at = 0;
-      for (const [name, column] of Object.entries(this.columns)) {
-        if (name === "rotor_angle") continue;
+      for (const column of this.order.map((name) => this.columns[name])) {
         column.append(row.slice(at, at + column.width).map((value) => value ?? NaN));
         at += column.width;
       }

@@ -311,3 +311,10 @@ async function start(root) {
 const quadcore = { players: [] };
 window.quadcore = quadcore;
 quadcore.ready = Promise.all([...document.querySelectorAll(".quadcore-player")].map(start));
+if (location.hash === "#gif") quadcore.ready.then(() => {
+  const written = document.createElement("pre");
+  written.id = "gif";
+  const bytes = Array.from(quadcore.players[0].makeGif(), (byte) => String.fromCharCode(byte));
+  written.textContent = btoa(bytes.join(""));
+  document.body.append(written);
+});

@@ -1,22 +1,22 @@
-"""``quadcore play``: make a page that animates logs."""
+"""``quadcore play``: animate logs in a browser, a page or a GIF."""
 
 from __future__ import annotations
 
 import argparse
+import threading
 from pathlib import Path
-from typing import Any, List, Sequence, Tuple
+from typing import Any, List, Optional, Sequence, Tuple
 
 from .._core import InputError
 from ..model import resources
+from ..report.cameras import CAMERAS
 from ..simulation.log import Log
 from ..studies.options import OUTPUT, VEHICLE
 from ..support import parse
 from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, terminal
 from .parser import add_command, complete_from, find_group
-from .run_folder import find_logs, find_vehicle
-
-_PAGE = "play.html"
+from .run_folder import find_logs, find_vehicle, find_world
 
 
 def register(commands: Any) -> None:
@@ -24,11 +24,12 @@ def register(commands: Any) -> None:
     parser = add_command(
         commands,
         "play",
-        "Make a page that animates logs.",
-        make_page,
+        "Animate logs in a browser, a page or a GIF.",
+        play_logs,
         """
         quadcore play out/hover
         quadcore play a.csv b.csv --model hexarotor --names before,after -o flights.html
+        quadcore play out/hover --gif hover.gif --camera whole
         """,
     )
     add_logs(parser)
@@ -37,13 +38,25 @@ def register(commands: Any) -> None:
         "--out",
         metavar="PAGE.html",
         type=Path,
-        help=f"page to write (default: {_PAGE} next to the first log)",
+        help="page to write (default: show the page in the browser until Ctrl-C)",
+    )
+    find_group(parser, OUTPUT).add_argument(
+        "--gif",
+        metavar="FILE.gif",
+        type=Path,
+        help="animation to write, 560 x 360 px; needs Chromium or Chrome",
+    )
+    find_group(parser, OUTPUT).add_argument(
+        "--camera",
+        choices=CAMERAS,
+        default=CAMERAS[0],
+        help=f"camera at the start, and of the GIF (default: {CAMERAS[0]})",
     )
     model = find_group(parser, VEHICLE).add_argument(
         "--model",
         metavar="MODEL",
-        help="model that gives the places of the rotors (default: that of the folder that `run` "
-        "wrote, else a cross)",
+        help="model that gives the shapes of the vehicle (default: that of the folder that `run` "
+        "wrote, else a star of arms)",
     )
     complete_from(model, list(resources.list_shipped("urdf")))
     options.add_quiet(parser)
@@ -68,25 +81,56 @@ def add_logs(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def make_page(arguments: argparse.Namespace) -> None:
-    """Read the logs and write the page."""
-    from ..report.player import PlayerFlight  # jinja2 is slow to import
-    from ..report.player import make_page as render_page
+def play_logs(arguments: argparse.Namespace) -> None:
+    """Read the logs, and write what was asked for, or show the page in the browser."""
+    from ..report.player import PlayerFlight, make_page  # jinja2 is slow to import
 
     logs, names = read_logs(arguments)
-    out = arguments.out or logs[0].parent / _PAGE
-    if out.suffix.lower() not in (".html", ".htm"):
-        raise InputError(f"{out}: is not a page. Name a file that ends in .html.")
-    check_writable(out)
+    _check_output(arguments.out, (".html", ".htm"), "a page")
+    _check_output(arguments.gif, (".gif",), "a GIF")
     flights = [
-        PlayerFlight(name, Log.of_file(log, arguments.mapping), find_vehicle(log, arguments.model))
+        PlayerFlight(name, Log.of_file(log), find_vehicle(log, arguments.model))
         for name, log in zip(names, logs)
     ]
-    text = render_page(flights, ", ".join(names))
-    with atomic_write(out) as stream:
-        stream.write(encode_text(text))
-    if not arguments.quiet:
-        terminal.print_written([out])
+    page = make_page(flights, ", ".join(names), find_world(logs), arguments.camera)
+    written = []
+    if arguments.out is not None:
+        written += _write(arguments.out, encode_text(page))
+    if arguments.gif is not None:
+        from ..report.gif import make_gif
+
+        written += _write(arguments.gif, make_gif(page))
+    if not written:
+        _show(page, arguments.quiet)
+    elif not arguments.quiet:
+        terminal.print_written(written)
+
+
+def _check_output(file: Optional[Path], suffixes: Sequence[str], kind: str) -> None:
+    if file is None:
+        return
+    if file.suffix.lower() not in suffixes:
+        raise InputError(f"{file}: is not {kind}. Name a file that ends in {suffixes[0]}.")
+    check_writable(file)
+
+
+def _write(file: Path, content: bytes) -> List[Path]:
+    with atomic_write(file) as stream:
+        stream.write(content)
+    return [file]
+
+
+def _show(page: str, quiet: bool) -> None:
+    """Serve a page to the browser of this machine until a signal ends the process."""
+    from ..report.page_server import PageServer, open_browser
+
+    server = PageServer(page)
+    if not open_browser(server.url) or not quiet:
+        print(f"showing {server.url} until Ctrl-C", flush=True)
+    try:
+        threading.Event().wait()
+    finally:
+        server.close()
 
 
 def read_logs(arguments: argparse.Namespace) -> Tuple[List[Path], List[str]]:

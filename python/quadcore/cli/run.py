@@ -6,7 +6,7 @@ import argparse
 import os
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Sequence
 
 from .._core import InputError, QuadcoreError
 from ..formats.rows import Recorder
@@ -17,11 +17,18 @@ from ..simulation.log import check_log_path, make_log_file
 from ..simulation.recording import DecimatedRows, FastestRotor, Recording, TrackingError
 from ..studies.options import OUTPUT
 from ..studies.output_folder import output_folder
-from ..support import interrupts
+from ..support import interrupts, parse
 from . import options, reading, run_folder, terminal
 from .command_checks import warn_of_commands
 from .parser import add_command, find_group
 from .run_summary import describe_result, summarize
+
+if TYPE_CHECKING:
+    from ..simulation.flight_plan import FlightPlan
+    from ..simulation.live_view import LiveView
+    from ..simulation.simulation import Simulation
+
+_PATIENCE = 10.0  # s, for the browser to open a live view
 
 
 def register(commands: Any) -> None:
@@ -50,6 +57,15 @@ def register(commands: Any) -> None:
         default=[],
         help="log to write, .csv, .mat or .bag; repeatable",
     )
+    find_group(parser, OUTPUT).add_argument(
+        "--live", action="store_true", help="show the flight in the browser while it goes on"
+    )
+    find_group(parser, OUTPUT).add_argument(
+        "--pace",
+        metavar="X",
+        type=parse.not_negative,
+        help="simulated seconds per second with --live; 0: as fast as possible (default: 1)",
+    )
     options.add_log_topics(parser)
     options.add_wrenches(parser)
     options.add_json(parser)
@@ -59,6 +75,8 @@ def run_flight(arguments: argparse.Namespace) -> None:
     """Simulate, write what was asked for, and print a summary."""
     if arguments.wrenches:
         check_wrenches(arguments.engine)
+    if arguments.pace is not None and not arguments.live:
+        raise InputError("--pace: needs --live, which shows the flight. Add --live.")
     with output_folder(arguments.out, run_folder.FILES, run_folder.DOCUMENT):
         _run(arguments)
 
@@ -79,6 +97,9 @@ def _run(arguments: argparse.Namespace) -> None:
         steps = count_steps(plan.duration, simulation.dt)
         drawn = DecimatedRows(1 + steps // plan.log_every, columns, terms)
         others.append(drawn)
+    view = _open_view(arguments, plan, simulation, columns) if arguments.live else None
+    if view is not None:
+        others.append(view)
     files = _check_log_files(arguments)
     logs = [make_log_file(file, columns, terms, simulation.ignored) for file in files]
     recording = Recording(logs, others)
@@ -98,6 +119,7 @@ def _run(arguments: argparse.Namespace) -> None:
                 progress,
                 pilot,
                 plan.topics,
+                _choose_pace(arguments),
             )
     except (QuadcoreError, KeyboardInterrupt, MemoryError):
         with interrupts.hold_signals():
@@ -120,8 +142,32 @@ def _run(arguments: argparse.Namespace) -> None:
         for row in rows:
             table.add_row(*row)
         terminal.make_console().print(table)
+    if view is not None:
+        view.page.wait_for_pages(_PATIENCE)
     recording.check()
     warn_of_commands(simulation, plan)
+
+
+def _open_view(
+    arguments: argparse.Namespace,
+    plan: FlightPlan,
+    simulation: Simulation,
+    columns: Sequence[str],
+) -> LiveView:
+    """Show the flight in the browser of this machine."""
+    from ..report.page_server import open_browser
+    from ..simulation.live_view import LiveView  # jinja2 is slow to import
+
+    view = LiveView(simulation, columns, plan.model, plan.log_every)
+    if not open_browser(view.page.url) or not arguments.quiet:
+        terminal.print_message(f"live view: {view.page.url}")
+    return view
+
+
+def _choose_pace(arguments: argparse.Namespace) -> float:
+    if not arguments.live:
+        return 0.0
+    return 1.0 if arguments.pace is None else float(arguments.pace)
 
 
 def _check_log_files(arguments: argparse.Namespace) -> list[Path]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import platform
 import shlex
 import time
@@ -20,8 +19,7 @@ from ..report.drawn_vehicle import DrawnVehicle, DrawnWorld
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
-from ..simulation.trajectory import per_command
-from ..studies.measured_flight import find_speed_limit
+from ..simulation.trajectory import find_speed_limit, per_command
 from ..studies.table import make_json, save_files
 from ..support.input_files import is_file, read_text
 from ..support.output_files import encode_text
@@ -55,6 +53,7 @@ def write_description(arguments: argparse.Namespace, plan: FlightPlan) -> List[P
         "model": plan.model.name,
         "engine": plan.engine,
         "world": arguments.world or "empty",
+        "ground": plan.world.ground_plane,
         "seed": plan.seed,
         "dt": plan.step,
         "duration": plan.duration,
@@ -77,7 +76,6 @@ def write_results(
     from ..report.page import write_page  # jinja2 is slow to import
     from ..report.player import PlayerFlight, make_section
 
-    limit = find_speed_limit(simulation.rotors)
     log.per_command = per_command(simulation)
     name = f"{simulation.model.name}, {simulation.engine}"
     log.title = ", ".join(filter(None, (name, log.title)))
@@ -87,7 +85,7 @@ def write_results(
         name,
         log,
         read_vehicle(plan.model),
-        speed_limit=limit if math.isfinite(limit) else None,
+        speed_limit=find_speed_limit(simulation.rotors),
     )
     write_page(
         page,
@@ -133,6 +131,11 @@ def find_vehicle(log: Path, model: Optional[str]) -> Optional[DrawnVehicle]:
     if not described or not is_file(log.parent / MODEL):
         return None
     return read_vehicle(read_model(log.parent / MODEL, ignore=described.get("ignore", [])))
+
+
+def find_world(logs: Sequence[Path]) -> DrawnWorld:
+    """Return what stands around the vehicles, from the folders of the logs."""
+    return DrawnWorld(any(_read_description(log).get("ground") for log in logs))
 
 
 def _read_description(log: Path) -> Dict[str, Any]:

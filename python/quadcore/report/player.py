@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import pickle
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
@@ -10,6 +11,7 @@ import numpy as np
 
 from .._core import InputError
 from ..support.rotation import unwrap_angles
+from .cameras import CAMERAS
 from .colours import PALETTE, choose_colour, choose_dashes
 from .drawn_vehicle import DrawnShape, DrawnVehicle, DrawnWorld, make_generic_vehicle
 from .packing import (
@@ -25,9 +27,6 @@ from .page import has_player, render
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
     from ..simulation.trajectory import Trajectory
-
-CAMERAS = ("follow", "chase", "top", "side", "whole")
-"""Names of the cameras; the first is the default."""
 
 _WIND = "wind"
 _PAYLOAD = ("mass", "x", "y", "z")  # kg, m; mass 0: no payload
@@ -50,8 +49,8 @@ class PlayerFlight:
         Shapes to draw, from `read_vehicle`. Without them, the vehicle is a star of arms.
     events : sequence of (float, str)
         Times (s) and descriptions of events, marked in the plots.
-    speed_limit : float, optional
-        Maximum rotor joint speed, rad/s.
+    speed_limit : float
+        Maximum rotor joint speed, rad/s; infinite without one.
     style : int, optional
         Number of the colour and line style, as for `curve_style`; default: the place among the
         flights.
@@ -61,7 +60,7 @@ class PlayerFlight:
     log: Trajectory
     vehicle: Optional[DrawnVehicle] = None
     events: Sequence[Tuple[float, str]] = ()
-    speed_limit: Optional[float] = None
+    speed_limit: float = math.inf
     style: Optional[int] = None
 
     def __post_init__(self) -> None:
@@ -133,14 +132,64 @@ def make_section(
     if not flights:
         raise InputError("no flight to animate. Give at least one.")
     numbers = Numbers()
+    vehicles = _number_vehicles(flights)
     content = {
-        **_describe_scene([flight.vehicle for flight in flights], flights, world, camera, numbers),
-        "flights": [_pack_flight(flight, i, numbers) for i, flight in enumerate(flights)],
-        "plots": _pack_plots([flight.log for flight in flights], flights, numbers),
+        **_describe_world(world, camera, numbers),
+        "vehicles": _pack_vehicles(flights, numbers),
+        "flights": [
+            {**_pack_flight(flight, i, numbers), "vehicle": vehicles[i]}
+            for i, flight in enumerate(flights)
+        ],
+        "plots": _pack_plots(flights, numbers),
     }
-    for flight, number in zip(content["flights"], _number_vehicles(flights)):
-        flight["vehicle"] = number
     return render_section(content, numbers)
+
+
+def make_live_page(
+    title: str,
+    log: Trajectory,
+    vehicle: DrawnVehicle,
+    world: DrawnWorld,
+    url: str,
+    speed_limit: float = math.inf,
+) -> str:
+    """Make a page that shows a flight while it goes on.
+
+    Parameters
+    ----------
+    title
+        Heading of the page, and name of the flight.
+    log
+        Log without rows; its columns are those that `url` will send.
+    vehicle, world
+        Shapes to draw.
+    url
+        Address of the rows, as server-sent events with the columns of `list_columns`.
+    speed_limit
+        Maximum rotor joint speed, rad/s.
+    """
+    numbers = Numbers()
+    packed: Dict[str, Any] = {
+        "name": title,
+        "vehicle": 0,
+        "colour": choose_colour(0),
+        "dash": [],
+        "events": [],
+    }
+    packed["columns"] = {
+        name: {"width": values.shape[1], "values": numbers.add([])}
+        for name, (values, _) in list_columns(log).items()
+    }
+    packed["order"] = list(packed["columns"])  # of the columns in each row
+    packed["speed_limit"] = _or_none(speed_limit)
+    content = {
+        **_describe_world(world, CAMERAS[0], numbers),
+        "vehicles": [pack_vehicle(vehicle, numbers)],
+        "flights": [packed],
+        "plots": [],
+        "live": url,
+    }
+    return render("play.html", title=title, player=render_section(content, numbers))
 
 
 def render_section(content: Dict[str, Any], numbers: Numbers) -> str:
@@ -164,27 +213,24 @@ def _identify(flight: PlayerFlight) -> Any:
     return ("generic", flight.log.rotor_velocity.shape[1])
 
 
-def _describe_scene(
-    vehicles: Sequence[Optional[DrawnVehicle]],
-    flights: Sequence[PlayerFlight],
-    world: Optional[DrawnWorld],
-    camera: str,
-    numbers: Numbers,
-) -> Dict[str, Any]:
+def _describe_world(world: Optional[DrawnWorld], camera: str, numbers: Numbers) -> Dict[str, Any]:
     if camera not in CAMERAS:
         raise InputError(f"camera '{camera}' is unknown. Use one of {', '.join(CAMERAS)}.")
-    drawn: Dict[Any, DrawnVehicle] = {}
-    for flight, vehicle in zip(flights, vehicles):
-        rotors = flight.log.rotor_velocity.shape[1]
-        drawn.setdefault(_identify(flight), vehicle or make_generic_vehicle(rotors))
     shown = world or DrawnWorld()
     return {
         "camera": camera,
         "palette": PALETTE,
         "ground": shown.ground,
         "obstacles": [_pack_shape(obstacle, numbers) for obstacle in shown.obstacles],
-        "vehicles": [pack_vehicle(vehicle, numbers) for vehicle in drawn.values()],
     }
+
+
+def _pack_vehicles(flights: Sequence[PlayerFlight], numbers: Numbers) -> List[Dict[str, Any]]:
+    drawn: Dict[Any, DrawnVehicle] = {}
+    for flight in flights:
+        rotors = flight.log.rotor_velocity.shape[1]
+        drawn.setdefault(_identify(flight), flight.vehicle or make_generic_vehicle(rotors))
+    return [pack_vehicle(vehicle, numbers) for vehicle in drawn.values()]
 
 
 def pack_vehicle(vehicle: DrawnVehicle, numbers: Numbers) -> Dict[str, Any]:
@@ -239,18 +285,6 @@ def list_columns(log: Trajectory) -> Dict[str, Tuple[np.ndarray, float]]:
     return columns
 
 
-def describe_flight(flight: PlayerFlight, number: int) -> Dict[str, Any]:
-    """Describe a flight for the script, without its rows."""
-    style = number if flight.style is None else flight.style
-    return {
-        "name": flight.name,
-        "colour": choose_colour(style),
-        "dash": choose_dashes(style),
-        "events": [{"time": float(time), "text": text} for time, text in flight.events],
-        "speed_limit": flight.speed_limit,
-    }
-
-
 def _pack_flight(flight: PlayerFlight, number: int, numbers: Numbers) -> Dict[str, Any]:
     log = flight.log
     columns = list_columns(log)
@@ -258,8 +292,13 @@ def _pack_flight(flight: PlayerFlight, number: int, numbers: Numbers) -> Dict[st
     changes = [np.flatnonzero(np.diff(values[:, 0])) for values in payloads]
     marks = [row for found in changes if len(found) < 100 for row in (*found, *(found + 1))]
     rows = choose_rows(log.time, log.position, log.orientation, marks)
+    style = number if flight.style is None else flight.style
     return {
-        **describe_flight(flight, number),
+        "name": flight.name,
+        "colour": choose_colour(style),
+        "dash": choose_dashes(style),
+        "events": [{"time": float(time), "text": text} for time, text in flight.events],
+        "speed_limit": _or_none(flight.speed_limit),
         "columns": {
             name: {"width": values.shape[1], "values": numbers.add(values[rows], quantum)}
             for name, (values, quantum) in columns.items()
@@ -267,23 +306,26 @@ def _pack_flight(flight: PlayerFlight, number: int, numbers: Numbers) -> Dict[st
     }
 
 
-def _pack_plots(
-    logs: Sequence[Trajectory], flights: Sequence[PlayerFlight], numbers: Numbers
-) -> List[Dict[str, Any]]:
+def _or_none(limit: float) -> Optional[float]:
+    """Return a limit, or None for an infinite one, which JSON does not have."""
+    return limit if math.isfinite(limit) else None
+
+
+def _pack_plots(flights: Sequence[PlayerFlight], numbers: Numbers) -> List[Dict[str, Any]]:
     """Describe the plots under the animation."""
-    begin = min(float(log.time[0]) for log in logs)
-    end = max(float(log.time[-1]) for log in logs)
+    begin = min(float(flight.log.time[0]) for flight in flights)
+    end = max(float(flight.log.time[-1]) for flight in flights)
     time = numbers.add(make_plot_times(begin, end))
     panels: Dict[str, Dict[str, Any]] = {}
-    for number, (log, flight) in enumerate(zip(logs, flights)):
-        for title, part, values in _list_curves(log):
+    for number, flight in enumerate(flights):
+        for title, part, values in _list_curves(flight.log):
             panel = panels.setdefault(
                 title, {"name": title, "time": time, "least": 1e-6, "curves": [], "limits": []}
             )
-            reduced = pick_extremes(log.time, values, begin, end)
+            reduced = pick_extremes(flight.log.time, values, begin, end)
             packed = numbers.add(reduced, choose_quantum(reduced))
             panel["curves"].append({"flight": number, "part": part, "values": packed})
-            limit = flight.speed_limit
+            limit = _or_none(flight.speed_limit)
             if title == _ROTORS and limit is not None and limit not in panel["limits"]:
                 panel["limits"].append(limit)
     order = {name: i for i, name in enumerate(_PANELS)}

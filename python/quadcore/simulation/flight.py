@@ -28,6 +28,7 @@ Progress = Callable[[int, int], None]
 
 _LONGEST = 1e9  # s
 _PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
+_PACED = 0.04  # s of wall-clock time; longest piece of a flight at a pace
 _ROWS = 4096  # of a piece, at most; it stays in the cache until its rows are where they belong
 
 
@@ -75,6 +76,7 @@ def fly(
     progress: Optional[Progress] = None,
     pilot: Optional[Pilot] = None,
     topics: Sequence[str] = (),
+    pace: float = 0.0,
 ) -> None:
     """Simulate for a duration, and pass logged rows on every few hundredths of a second.
 
@@ -92,6 +94,8 @@ def fly(
         Source of the commands, instead of a table.
     topics
         Names of topics to log; their columns follow those of the state.
+    pace
+        Simulated seconds per second of wall-clock time, at most; 0: as fast as possible.
 
     Raises
     ------
@@ -115,7 +119,25 @@ def fly(
             pilot.reset(simulation)  # which may yet put the vehicle where it is to begin
         with run:
             flight = _core.Flight(simulation, table, log_every, wrenches, topics)
-            _advance(simulation, flight, total, _ROWS * log_every, receive, progress, pilot)
+            most = _ROWS * log_every
+        if pace:
+            most = max(1, min(most, int(_PACED * pace / simulation.dt)))
+        waiting = _Pace(pace, simulation.dt)
+        _advance(simulation, flight, total, most, receive, progress, pilot, waiting)
+
+
+class _Pace:
+    """Clock that keeps a flight from running ahead of wall-clock time."""
+
+    def __init__(self, pace: float, dt: float) -> None:
+        self._seconds_per_step = dt / pace if pace else 0.0
+        self._began = time.monotonic()
+
+    def wait(self, steps: int) -> None:
+        """Wait until a number of steps is due."""
+        ahead = self._began + steps * self._seconds_per_step - time.monotonic()
+        if self._seconds_per_step and ahead > 0:
+            time.sleep(ahead)
 
 
 @contextmanager
@@ -142,6 +164,7 @@ def _advance(
     receive: Receive,
     progress: Optional[Progress],
     pilot: Optional[Pilot],
+    pace: _Pace,
 ) -> None:
     """Simulate `total` steps in pieces of at most `most` steps."""
     advance = flight.advance if pilot is None else pilot.begin(simulation, flight)
@@ -165,6 +188,7 @@ def _advance(
     try:
         while done < total:
             hand_over()
+            pace.wait(done)
             steps = min(steps, total - done, most)
             started = time.perf_counter()
             _call_with_time(simulation, advance, steps)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence
 
 import numpy as np
 
-from .._core import InputError, Simulation, log_columns
+from .._core import InputError, Rotor, Simulation, log_columns
 from ..support.arguments import shorten
 from ..support.rotation import to_roll_pitch_yaw
 
@@ -20,6 +21,11 @@ def per_command(simulation: Simulation) -> float:
     """Return the ratio of joint velocity to commanded speed; 1 if rotors differ."""
     sizes = {abs(rotor.rate_per_command) for rotor in simulation.rotors}
     return sizes.pop() if len(sizes) == 1 else 1.0
+
+
+def find_speed_limit(rotors: Sequence[Rotor]) -> float:
+    """Return the limit of the joint speeds that all rotors share, rad/s; infinite without one."""
+    return min((rotor.max_speed / rotor.slowdown for rotor in rotors), default=math.inf)
 
 
 def is_slow(size: float) -> bool:

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from .._core import FlightError, Rotor
+from .._core import FlightError
 from ..model.visuals import read_vehicle
 from ..report.decimation import decimate
 from ..report.drawn_vehicle import DrawnVehicle
@@ -16,6 +16,7 @@ from ..simulation.flight import Rows, fly, list_columns
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
+from ..simulation.trajectory import find_speed_limit
 from ..support.warning import suppress_warnings
 from .controller_timing import summarise_durations
 from .step_response import step_response
@@ -147,11 +148,6 @@ def fly_and_measure(
     with suppress_warnings():
         vehicle = read_vehicle(flight.model)
     return outcome._replace(log=decimate(log), response=response, limit=limit, vehicle=vehicle)
-
-
-def find_speed_limit(rotors: Sequence[Rotor]) -> float:
-    """Return the limit of the joint speeds that all rotors share, rad/s; infinite without one."""
-    return min((rotor.max_speed / rotor.slowdown for rotor in rotors), default=float("inf"))
 
 
 def _animated_topics(simulation: Simulation) -> List[str]:

@@ -85,7 +85,7 @@ def _make_animations(evaluation: Evaluation, plan: Plan) -> List[Dict[str, Any]]
                 outcome.log,
                 outcome.vehicle,
                 marks,
-                outcome.limit if math.isfinite(outcome.limit) else None,
+                outcome.limit,
             )
             for label, outcome in flights
             if outcome.log is not None

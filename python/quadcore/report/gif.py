@@ -1,0 +1,60 @@
+"""GIF of an animation, which a browser without a window draws."""
+
+from __future__ import annotations
+
+import base64
+import re
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from .._core import InputError
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+"""Commands that are tried, in this order."""
+
+_LONGEST = 600.0  # s
+
+
+def make_gif(page: str) -> bytes:
+    """Draw the first animation of a page as a GIF of 560 x 360 px.
+
+    Parameters
+    ----------
+    page
+        Page from `make_page`; the GIF has its camera.
+
+    Raises
+    ------
+    InputError
+        If there is no browser, or it fails.
+    """
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if program is None:
+        raise InputError(
+            "a GIF needs Chromium or Chrome. Install one (Debian, Ubuntu: apt install chromium), "
+            "or press 'Save GIF' in the page."
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "page.html"
+        file.write_text(page, encoding="utf-8")
+        command = [
+            *[program, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"],
+            *["--enable-unsafe-swiftshader", f"--user-data-dir={folder}/user"],
+            *["--virtual-time-budget=600000", "--dump-dom", f"{file.as_uri()}#gif"],
+        ]
+        try:
+            answer = subprocess.run(
+                command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=_LONGEST
+            )
+        except subprocess.TimeoutExpired:
+            raise InputError(
+                f"{program}: has not drawn the GIF within {_LONGEST:g} s. Give a shorter flight."
+            ) from None
+    found = re.search(rb'<pre id="gif">([A-Za-z0-9+/=]+)</pre>', answer.stdout)
+    if found is None:
+        raise InputError(
+            f"{program}: has drawn no GIF. Open the page (-o PAGE.html), and press 'Save GIF'."
+        )
+    return base64.b64decode(found.group(1))

@@ -1,0 +1,80 @@
+"""Rows of a flight that goes on, for a page that shows it."""
+
+from __future__ import annotations
+
+from typing import List, Optional, Sequence
+
+import numpy as np
+
+from .._core import Model
+from ..model.visuals import read_vehicle
+from ..report.drawn_vehicle import DrawnWorld
+from ..report.page_server import EVENTS, PageServer
+from ..report.player import list_columns, make_live_page
+from .log import Log
+from .simulation import Simulation
+from .trajectory import find_speed_limit
+
+_RATE = 60.0  # rows per second of the flight, at most
+
+
+class LiveView:
+    """Recorder that sends the rows of one flight to a page on this machine.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Vehicle and world to draw.
+    columns : sequence of str
+        Names of the columns of the rows, as from `flight.list_columns`.
+    model : Model, optional
+        Model that was read; default: that of the simulation.
+    log_every : int
+        Steps between two rows.
+    every : int, optional
+        Rows per row that is sent; default: as many as leave 60 rows per simulated second.
+    """
+
+    wrenches = False
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        columns: Sequence[str],
+        model: Optional[Model] = None,
+        log_every: int = 1,
+        every: Optional[int] = None,
+    ) -> None:
+        self._columns = list(columns)
+        self._every = every or max(1, round(1 / (_RATE * simulation.dt * log_every)))
+        self._seen = 0
+        vehicle = read_vehicle(model or simulation.model)
+        empty = Log.of_rows(np.zeros((0, len(self._columns))), self._columns, {})
+        self.page = PageServer(
+            make_live_page(
+                vehicle.name,
+                empty,
+                vehicle,
+                DrawnWorld(simulation.world.ground_plane),
+                EVENTS,
+                find_speed_limit(simulation.rotors),
+            )
+        )
+
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
+        """Send the rows of a piece that the page needs."""
+        picked = table[-self._seen % self._every :: self._every]
+        self._seen += len(table)
+        if len(picked):
+            self.page.append(make_rows(picked, self._columns))
+
+    def close(self) -> None:
+        """Send the page the end of the flight."""
+        self.page.end()
+
+
+def make_rows(table: np.ndarray, columns: Sequence[str]) -> List[List[Optional[float]]]:
+    """Return rows of a log with the columns that the page reads, None instead of NaN."""
+    shown = list_columns(Log.of_rows(table, columns, {}))
+    rows = np.hstack([values for values, _ in shown.values()]).tolist()
+    return [[None if value != value else value for value in row] for row in rows]
