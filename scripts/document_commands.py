@@ -92,6 +92,14 @@ EXAMPLES = {
         before=HEAVIER,
         is_exact=False,
     ),
+    "predict": Example(
+        "quadcore predict crazyflie --log flight.csv --out out/prediction",
+        "The log is that of the same vehicle, so that only the differences of steps remain. "
+        "See [fit a model](../fit.md#recordings-of-real-flights).",
+        before="quadcore run crazyflie --controller geometric --reference eight --engine eigen \\\n"
+        "  --duration 12 --log-every 10 --log flight.csv --quiet",
+        is_exact=False,
+    ),
     "convert": Example(
         "quadcore convert flight.csv flight.mat",
         "See [file formats](../formats.md).",

@@ -5,17 +5,20 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 from .._core import InputError, engines, parse_number
+from ..formats.recordings import is_recording
 from ..simulation.engines import STUDY_ENGINE
 from ..studies.fit.record import CHANNELS
 from ..studies.options import FLIGHT, OUTPUT, STUDY
 from ..support import parse
 from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, reading, terminal
+from .fit_recordings import DAMAGE, fit_damage, fit_real_flights
 from .interrupted_output import keep_partial_output
 from .parser import add_command, find_group
+from .predict import add_force
 
 if TYPE_CHECKING:
     from ..studies.fit.fit import Fit
@@ -26,9 +29,10 @@ def register(commands: Any) -> None:
     parser = add_command(
         commands,
         "fit",
-        "Identify parameters of a model from the log of a flight.",
+        "Identify parameters of a model from logs of flights.",
         fit_model,
         """
+        quadcore fit crazyflie --log a.csv --log b.csv --judge c.csv -o fitted.urdf
         quadcore fit quadrotor --log flight.csv --free frame.mass,drone_plugin.rotorThrustCoeff \\
           -o fitted.urdf
         """,
@@ -36,15 +40,36 @@ def register(commands: Any) -> None:
     options.add_model(parser)
     study, output = find_group(parser, STUDY), find_group(parser, OUTPUT)
     study.add_argument(
-        "--log", metavar="FILE", required=True, help="log of the flight, .csv, .mat or .bag"
+        "--log",
+        metavar="FILE",
+        required=True,
+        action="append",
+        default=[],
+        help="log of the flight, .csv, .mat or .bag, or a recording of a real flight; repeatable",
     )
+    study.add_argument(
+        "--judge",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="recording on which to judge the predictions of the fitted model; repeatable",
+    )
+    study.add_argument(
+        "--sound",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="recording of the undamaged vehicle, for --free rotors.factor; repeatable",
+    )
+    add_force(parser)
+    options.add_mapping(parser)
     study.add_argument(
         "--free",
         metavar="A,B",
         type=parse.names,
-        required=True,
-        help="parameters to identify: PLUGIN.TAG, LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG; the "
-        "search starts at their values in the model, or at those of --set and --xacro",
+        help="parameters to identify: PLUGIN.TAG, LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG, and "
+        "for recordings inputs or rotors.factor (default for recordings: inertia, motors, drag, "
+        "damping, inputs); start values come from the model, --set and --xacro",
     )
     study.add_argument(
         "--bound",
@@ -90,8 +115,12 @@ def register(commands: Any) -> None:
         "--engine", choices=names, default=STUDY_ENGINE, help=f"engine (default: {STUDY_ENGINE})"
     )
     options.add_options(parser, "world", "dt")
+    output.add_argument("-o", metavar="FITTED.urdf", type=Path, help="model to write")
     output.add_argument(
-        "-o", "--out", metavar="FITTED.urdf", type=Path, required=True, help="model to write"
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="folder for the errors of --judge, or, if it ends in .urdf, the model to write",
     )
     options.add_quiet(parser)
 
@@ -100,10 +129,13 @@ def fit_model(arguments: argparse.Namespace) -> None:
     """Identify the parameters, print them, and write the model."""
     from ..studies.fit import fit
 
-    out = arguments.out
-    if out.suffix.lower() != ".urdf":
-        raise InputError(f"{out}: is not a URDF file. Name a file that ends in .urdf.")
-    check_writable(out)
+    out = _find_model_file(arguments)
+    if arguments.free == [DAMAGE]:
+        fit_damage(arguments, out)
+        return
+    if len(arguments.log) > 1 or arguments.judge or is_recording(Path(arguments.log[0])):
+        fit_real_flights(arguments, out, _read_all_bounds(arguments))
+        return
     shared = reading.read_model_arguments(arguments)
 
     def write_model(model: Any) -> None:
@@ -115,14 +147,14 @@ def fit_model(arguments: argparse.Namespace) -> None:
     ), terminal.show_progress(arguments.quiet, "fitting") as progress:
         found = fit(
             shared.pop("model"),
-            arguments.log,
-            arguments.free,
+            arguments.log[0],
+            arguments.free or [],
             commands=arguments.commands,
             engine=arguments.engine,
             horizon=arguments.horizon,
             channels=arguments.channels,
             sensed=arguments.sensed,
-            bounds={name: _read_bounds(name, text) for name, text in arguments.bound},
+            bounds=_read_all_bounds(arguments),
             shift=arguments.shift,
             world=arguments.world,
             dt=arguments.dt,
@@ -132,6 +164,23 @@ def fit_model(arguments: argparse.Namespace) -> None:
     write_model(found.model)
     if not arguments.quiet:
         _show(found, out)
+
+
+def _find_model_file(arguments: argparse.Namespace) -> Path:
+    """Return the file of the fitted model; ``--out`` was its only option once."""
+    out: Optional[Path] = arguments.o
+    if out is None and arguments.out is not None and not arguments.judge:
+        out = arguments.out
+    if out is None:
+        raise InputError("the fitted model has no file. Name it with -o FITTED.urdf.")
+    if out.suffix.lower() != ".urdf":
+        raise InputError(f"{out}: is not a URDF file. Name a file that ends in .urdf.")
+    check_writable(out)
+    return out
+
+
+def _read_all_bounds(arguments: argparse.Namespace) -> dict[str, tuple[float, float]]:
+    return {name: _read_bounds(name, text) for name, text in arguments.bound}
 
 
 def _read_bounds(name: str, text: str) -> tuple[float, float]:

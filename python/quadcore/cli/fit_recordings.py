@@ -1,0 +1,125 @@
+"""``quadcore fit`` with recordings of real flights."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Dict, Tuple
+
+from .._core import InputError
+from ..support.output_files import atomic_write, encode_text
+from . import reading, terminal
+
+DAMAGE = "rotors.factor"
+"""Name of the free parameter that is the thrust of each rotor."""
+
+_FACTORS = "rotorFactors"
+
+
+def fit_real_flights(
+    arguments: argparse.Namespace, out: Path, bounds: Dict[str, Tuple[float, float]]
+) -> None:
+    """Fit a model to recordings, judge it, and write it with its map of inputs."""
+    from ..studies.fit.input_file import name_input_file, write_inputs
+    from ..studies.fit.recorded import fit_recordings
+    from .flight_tables import show_fit, show_flights, show_judgement, write_judgement
+
+    _refuse_options(arguments)
+    shared = reading.read_model_arguments(arguments)
+    with terminal.show_progress(arguments.quiet, "fitting") as progress:
+        fit = fit_recordings(
+            shared.pop("model"),
+            arguments.log,
+            arguments.judge,
+            free=arguments.free,
+            mapping=arguments.mapping,
+            bounds=bounds,
+            world=arguments.world,
+            progress=progress,
+            **shared,
+        )
+    with atomic_write(out) as stream:
+        stream.write(encode_text(fit.model.document.text))
+    written = [out, name_input_file(out)]
+    write_inputs(written[1], fit.found.values)
+    if fit.judgement and arguments.out:
+        written += write_judgement(arguments.out, fit.judgement)
+    if not arguments.quiet:
+        show_flights([*fit.flights, *fit.judged])
+        show_fit(fit)
+        if fit.judgement:
+            show_judgement(fit.judgement)
+        terminal.print_written(written)
+    if fit.judgement and not arguments.force:
+        fit.judgement.check()
+
+
+def fit_damage(arguments: argparse.Namespace, out: Path) -> None:
+    """Find the factors of damaged rotors, print them, and write the model."""
+    from ..studies.fit.fitted_model import FittedModel
+    from ..studies.fit.model_text import write_values
+    from ..studies.fit.predictor import find_plugin
+    from ..studies.fit.prepared import read_flight
+    from ..studies.fit.rotor_factors import find_rotor_factors
+
+    if not arguments.sound:
+        raise InputError(
+            "free rotors.factor: name recordings of the undamaged vehicle with --sound FILE."
+        )
+    shared = reading.read_model_arguments(arguments)
+    fitted = FittedModel(
+        [],
+        shared["model"],
+        "eigen",
+        arguments.world,
+        None,
+        shared["parameters"],
+        shared["xacro_args"],
+        shared["ignore"],
+    )
+    plugin = find_plugin(fitted, _FACTORS)
+    if plugin is None:
+        raise InputError(f"free rotors.factor: the model has no plugin with the tag {_FACTORS}.")
+    found = find_rotor_factors(
+        [read_flight(log, arguments.mapping) for log in arguments.log],
+        [read_flight(log, arguments.mapping) for log in arguments.sound],
+    )
+    rotors = fitted.simulation.rotors
+    if len(rotors) != len(found.factors):
+        raise InputError(
+            f"the recordings have {len(found.factors)} rotors, the model {len(rotors)}."
+        )
+    text = " ".join(f"{factor:.6g}" for factor in found.factors)
+    model = write_values(fitted.model, {**fitted.fixed, f"{plugin}.{_FACTORS}": text})
+    with atomic_write(out) as stream:
+        stream.write(encode_text(model.document.text))
+    if arguments.quiet:
+        return
+    console = terminal.make_console()
+    table = terminal.make_table("rotor", "joint", "factor", "std dev", numbers=True)
+    for i, (factor, deviation) in enumerate(zip(found.factors, found.deviations)):
+        table.add_row(str(i + 1), rotors[i].joint, f"{factor:.3f}", f"{deviation:.2g}")
+    console.print(table, "")
+    worst = found.damaged
+    if worst is None:
+        console.print("no rotor has lost thrust for certain")
+    else:
+        loss = 100 * (1 - found.factors[worst])
+        console.print(
+            f"rotor {worst + 1} ({rotors[worst].joint}) has lost {loss:.0f} % of its thrust"
+        )
+    terminal.print_written([out])
+
+
+def _refuse_options(arguments: argparse.Namespace) -> None:
+    """Refuse options that only logs of quadcore have."""
+    given = {
+        "--commands": arguments.commands is not None,
+        "--sensed": arguments.sensed is not None,
+        "--channels": arguments.channels is not None,
+        "--shift": arguments.shift != 0,
+        "--sound": bool(arguments.sound),
+    }
+    for name, is_given in given.items():
+        if is_given:
+            raise InputError(f"{name} does not apply to a fit of several logs or recordings.")

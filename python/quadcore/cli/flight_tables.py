@@ -1,0 +1,99 @@
+"""Tables on recordings of real flights, and the files of their predictions."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, List, Sequence
+
+import numpy as np
+
+from ..studies.fit.inputs import INPUTS
+from ..studies.fit.windows import HORIZONS
+from ..support.output_files import atomic_write, encode_text, make_folder
+from . import terminal
+
+if TYPE_CHECKING:
+    from ..studies.fit.judgement import Judgement
+    from ..studies.fit.prepared import PreparedFlight
+    from ..studies.fit.recorded import RecordedFit
+
+
+def show_flights(flights: Sequence[PreparedFlight]) -> None:
+    """Print what was aligned and left out of each recording."""
+    console = terminal.make_console()
+    table = terminal.make_table("recording", "in the air", "topic", "lag", "left out")
+    for flight in flights:
+        span = f"{flight.span[1] - flight.span[0]:.1f} s"
+        left = {(r.topic, f"{r.samples} samples: {r.reason}") for r in flight.removals}
+        topics = sorted({*flight.lags, *(topic for topic, _ in left)})
+        name = Path(flight.where).name
+        if flight.tilt:
+            topics.append("pose axes")
+        for topic in topics or [""]:
+            lag = f"{1e3 * flight.lags[topic]:.1f} ms" if topic in flight.lags else ""
+            why = "; ".join(sorted(text for of, text in left if of == topic))
+            if topic == "pose axes":
+                why = f"turned by {flight.tilt:.1f} deg to the IMU"
+            table.add_row(name, span, topic, lag, why)
+            name = span = ""
+        if len(flight.gaps):
+            longest = float(np.max(flight.gaps[:, 1] - flight.gaps[:, 0]))
+            table.add_row("", "", "gaps", "", f"{len(flight.gaps)}, the longest {longest:.2f} s")
+    console.print(table, "")
+
+
+def show_fit(fit: RecordedFit) -> None:
+    """Print parameters with deviations, trims, and unidentified parameters."""
+    console = terminal.make_console()
+    table = terminal.make_table("parameter", "start", "fitted", "std dev", "unit", numbers=True)
+    found = fit.found
+    for name, deviation in found.deviations.items():
+        value = found.values[name]
+        spread = "not identifiable" if math.isnan(deviation) else f"{deviation:.2g}"
+        if name in INPUTS and deviation == 0:
+            spread = "fixed"
+        table.add_row(name, f"{found.start[name]:.5g}", f"{value:.5g}", spread, found.units[name])
+    console.print(table, "")
+    for line in fit.describe():
+        console.print(line)
+    for flight, trim in zip(fit.flights, found.trims):
+        console.print(f"{Path(flight.where).name}: commands delayed by {1e3 * trim[0]:.0f} ms")
+    console.print("")
+
+
+def show_judgement(judgement: Judgement) -> None:
+    """Print the errors over the horizon."""
+    console = terminal.make_console()
+    heads = [f"{horizon:g} s" for horizon in HORIZONS]
+    table = terminal.make_table("model", "error (RMS)", "unit", *heads)
+    for model, channel, unit, numbers in judgement.list_rows():
+        table.add_row(model, channel, unit, *(f"{number:.3g}" for number in numbers))
+    console.print(table)
+    count = len(judgement.windows.start)
+    console.print(f"{count} windows; the first 30 % of each flight gave its delay and trim", "")
+
+
+def write_judgement(folder: Path, judgement: Judgement) -> List[Path]:
+    """Write errors.csv, and a page with measured and predicted motion if there is a pose."""
+    from ..report.player import PlayerFlight  # jinja2 is slow to import
+    from ..report.player import make_page as render_page
+    from ..studies.fit.judgement import make_logs
+
+    make_folder(folder)
+    heads = ",".join(f"{horizon:g}s" for horizon in HORIZONS)
+    lines = [f"model,channel,unit,{heads}"]
+    for model, channel, unit, numbers in judgement.list_rows():
+        lines.append(f"{model},{channel},{unit},{','.join(repr(number) for number in numbers)}")
+    written = [folder / "errors.csv"]
+    with atomic_write(written[0]) as stream:
+        stream.write(encode_text("\n".join(lines) + "\n"))
+    logs = make_logs(judgement)
+    if logs:
+        page = render_page(
+            [PlayerFlight(name, log) for name, log in logs], "measured and predicted"
+        )
+        written.append(folder / "prediction.html")
+        with atomic_write(written[1]) as stream:
+            stream.write(encode_text(page))
+    return written

@@ -1,0 +1,80 @@
+"""``quadcore predict``: predict real flights with a model."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from ..studies.options import OUTPUT, STUDY
+from . import options, reading, terminal
+from .parser import add_command, find_group
+
+_OUT = Path("out/predict")
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = add_command(
+        commands,
+        "predict",
+        "Predict recordings of real flights with a model, and print the error over the horizon.",
+        predict,
+        """
+        quadcore predict fitted.urdf --log flight.ulg --out out/predict
+        """,
+    )
+    options.add_model(parser)
+    study, output = find_group(parser, STUDY), find_group(parser, OUTPUT)
+    study.add_argument(
+        "--log", metavar="FILE", type=Path, required=True, action="append", default=[],
+        help="recording of a flight; repeatable",
+    )  # fmt: skip
+    options.add_mapping(parser)
+    study.add_argument(
+        "--inputs",
+        metavar="FILE",
+        type=Path,
+        help="map from commands to rotor speeds that `fit` wrote (default: MODEL.inputs.yaml "
+        "next to the model, else from the hover)",
+    )
+    add_force(parser)
+    options.add_options(parser, "world")
+    output.add_argument(
+        "--out", metavar="DIR", type=Path, default=_OUT,
+        help=f"folder for table and page (default: {_OUT})",
+    )  # fmt: skip
+    options.add_quiet(parser)
+
+
+def add_force(parser: argparse.ArgumentParser) -> None:
+    """Add the option that accepts a model that is worse than a baseline."""
+    find_group(parser, STUDY).add_argument(
+        "--force",
+        action="store_true",
+        help="accept a model that predicts worse than a baseline at 0.25 s (default: status 3)",
+    )
+
+
+def predict(arguments: argparse.Namespace) -> None:
+    """Predict, print the errors, and write them."""
+    from ..studies.fit.input_file import find_inputs
+    from ..studies.fit.recorded import predict_recordings
+    from .flight_tables import show_flights, show_judgement, write_judgement
+
+    shared = reading.read_model_arguments(arguments)
+    judgement, flights = predict_recordings(
+        shared.pop("model"),
+        arguments.log,
+        inputs=find_inputs(arguments.inputs, arguments.model),
+        mapping=arguments.mapping,
+        world=arguments.world,
+        **shared,
+    )
+    written = write_judgement(arguments.out, judgement)
+    if not arguments.quiet:
+        show_flights(flights)
+        show_judgement(judgement)
+        terminal.print_written(written)
+    if not arguments.force:
+        judgement.check()

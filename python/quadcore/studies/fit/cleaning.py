@@ -1,0 +1,114 @@
+"""Samples of a recording that are left out, and why."""
+
+from __future__ import annotations
+
+from typing import Dict, List, NamedTuple, Tuple
+
+import numpy as np
+
+from ...formats.recordings import Recording
+from ...formats.recordings.series import Series
+from .smoothing import estimate_noise, fit_locally
+
+_MEASURED = ("position", "orientation", "velocity", "rates", "acceleration")
+_FAR = 8.0
+"""Deviation from the neighbours at which a pose is a glitch, in standard deviations."""
+_LEAST = {"position": 0.01, "orientation": 0.03}
+"""The minimum of this deviation: m, and twice the sine of half an angle."""
+_REACH = 0.05  # s, of the polynomials that predict a pose
+_NEIGHBOURS = 11
+"""Samples among which one is removed at a time, for a glitch spoils the polynomials around it."""
+_ROUNDS = 20
+_GAP = 3.0
+"""Multiple of the usual distance of samples from which a gap counts."""
+
+
+class Removal(NamedTuple):
+    """Samples that were left out.
+
+    Attributes
+    ----------
+    topic, reason : str
+        Quantity and reason.
+    samples : int
+        Number of samples.
+    """
+
+    topic: str
+    reason: str
+    samples: int
+
+
+def clean_recording(recording: Recording) -> Tuple[Recording, List[Removal]]:
+    """Leave out repeated samples, impossible values and glitches, in this order.
+
+    The order matters: a repeated sample looks like a standstill, and the difference of two glitches
+    like a motion.
+    """
+    removals: List[Removal] = []
+    quantities: Dict[str, Series] = {}
+    for name, series in recording.quantities.items():
+        for reason, find in _CHECKS.items():
+            wrong = find(name, series)
+            if wrong.any():
+                removals.append(Removal(name, reason, int(wrong.sum())))
+                series = Series(series.time[~wrong], series.values[~wrong])
+        quantities[name] = series
+    return recording._replace(quantities=quantities), removals
+
+
+def list_gaps(series: Series) -> np.ndarray:
+    """List begin and end of each gap between samples, s; shape (gaps, 2)."""
+    apart = np.diff(series.time)
+    if len(apart) == 0:
+        return np.empty((0, 2))
+    wide = np.flatnonzero(apart > _GAP * np.median(apart))
+    return np.column_stack([series.time[wide], series.time[wide + 1]])
+
+
+def _find_repeated(name: str, series: Series) -> np.ndarray:
+    repeated = np.zeros(len(series.time), bool)
+    if name in _MEASURED:
+        repeated[1:] = (np.diff(series.values, axis=0) == 0).all(axis=1)
+    repeated[1:] |= np.diff(series.time) <= 0
+    return repeated
+
+
+def _find_impossible(name: str, series: Series) -> np.ndarray:
+    """Find commands out of their range, and voltages that no battery has."""
+    wrong = np.zeros(len(series.time), bool)
+    if name == "commands":
+        wrong[:] = ((series.values < -1e-6) | (series.values > 1 + 1e-6)).any(axis=1)
+    elif name == "battery":
+        wrong[:] = series.values[:, 0] <= 0
+    return wrong
+
+
+def _find_glitches(name: str, series: Series) -> np.ndarray:
+    """Find poses that their neighbours contradict, the farthest first."""
+    from scipy.ndimage import maximum_filter1d
+
+    glitch = np.zeros(len(series.time), bool)
+    if name not in _LEAST or len(series.time) < 12:
+        return glitch
+    values = series.values.copy()
+    if name == "orientation":
+        flips = np.where(np.sum(values[1:] * values[:-1], axis=1) < 0, -1, 1)
+        values[1:] *= np.cumprod(flips)[:, None]
+    limit = max(_FAR * float(estimate_noise(values).max()), _LEAST[name])
+    for _ in range(_ROUNDS):
+        kept = np.flatnonzero(~glitch)
+        smooth, _ = fit_locally(series.time[kept], values[kept], series.time[kept], _REACH)
+        apart = np.linalg.norm(values[kept] - smooth, axis=1)
+        peaks = (apart > limit) & (apart >= maximum_filter1d(apart, _NEIGHBOURS))
+        if not peaks.any():
+            break
+        glitch[kept[peaks]] = True
+    return glitch
+
+
+_CHECKS = {
+    "repeated sample": _find_repeated,
+    "out of range": _find_impossible,
+    "glitch": _find_glitches,
+}

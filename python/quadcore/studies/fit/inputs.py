@@ -1,0 +1,131 @@
+"""Rotor speeds that the inputs of a recording demand."""
+
+from __future__ import annotations
+
+from typing import Dict, List, Mapping, Sequence
+
+import numpy as np
+
+from ..._core import InputError, Rotor
+from .prepared import PreparedFlight
+from .smoothing import fit_locally
+
+INPUTS = {"inputs.speed": "rad/s", "inputs.exponent": "", "inputs.battery": ""}
+"""Parameters of the map from commands to speeds: w = speed u^exponent (V / full)^battery."""
+
+INPUT_BOUNDS = {
+    "inputs.speed": (0.0, np.inf),
+    "inputs.exponent": (0.3, 2.0),
+    "inputs.battery": (0.0, 2.0),
+}
+"""Minimum and maximum of `INPUTS`: speed controllers lie between, thrust over speed squared."""
+
+FULL_VOLTAGE = 4.2
+"""Voltage that `inputs.speed` refers to, V."""
+
+_MEMORY = 0.4  # s before a window that count for the speeds at its start
+_STEP = 5e-3  # s
+
+
+def demand_speeds(
+    flight: PreparedFlight, time: np.ndarray, values: Mapping[str, float], rotors: int
+) -> np.ndarray:
+    """Return the demanded speed of each rotor, unsigned, rad/s.
+
+    Parameters
+    ----------
+    flight
+        Flight with commands, or else measured rotor speeds.
+    time : ndarray
+        Times of any shape, s.
+    values
+        Values of `INPUTS`.
+    rotors
+        Number of rotors of the model.
+
+    Returns
+    -------
+    ndarray (*time.shape, rotors)
+    """
+    given = flight.rotors if flight.rotors is not None else flight.commands
+    assert given is not None
+    if given.values.shape[1] != rotors:
+        raise InputError(
+            f"{flight.where}: the recording has {given.values.shape[1]} rotors, the model {rotors}."
+        )
+    level = np.stack([np.interp(time, given.time, column) for column in given.values.T], axis=-1)
+    if flight.rotors is not None:
+        return np.asarray(np.abs(level))  # measured
+    speeds: np.ndarray = values["inputs.speed"] * np.clip(level, 0, 1) ** values["inputs.exponent"]
+    if flight.battery is not None:
+        volts = np.interp(time, flight.battery.time, flight.battery.values[:, 0])
+        speeds = speeds * (volts[..., None] / FULL_VOLTAGE) ** values["inputs.battery"]
+    return speeds
+
+
+def smooth_rotors(flight: PreparedFlight) -> PreparedFlight:
+    """Smooth measured rotor speeds, the noise of which would bias a fit, and differentiate them."""
+    if flight.rotors is None:
+        return flight
+    series = flight.rotors
+    value, slope = fit_locally(series.time, np.abs(series.values), series.time, 2 * _STEP)
+    return flight._replace(
+        rotors=series._replace(values=value), rotor_slopes=series._replace(values=slope)
+    )
+
+
+def lead_speeds(flight: PreparedFlight, time: np.ndarray, constants: np.ndarray) -> np.ndarray:
+    """Return the commands that give the measured speeds w: w + tau dw/dt for each rotor, rad/s."""
+    slopes = flight.rotor_slopes
+    assert slopes is not None
+    speeds = demand_speeds(flight, time, {}, len(constants))
+    columns = [np.interp(time, slopes.time, column) for column in slopes.values.T]
+    lead: np.ndarray = np.maximum(speeds + constants * np.stack(columns, axis=-1), 0)
+    return lead
+
+
+def lag_speeds(
+    flight: PreparedFlight,
+    start: np.ndarray,
+    values: Mapping[str, float],
+    constants: np.ndarray,
+) -> np.ndarray:
+    """Return the speeds at some times behind first-order lags, shape (n, rotors).
+
+    Parameters
+    ----------
+    flight, values
+        As for `demand_speeds`.
+    start : ndarray (n,)
+        Times, s, already moved by the delay.
+    constants : ndarray (rotors,)
+        Time constants, s.
+    """
+    ages = np.arange(0.5 * _STEP, _MEMORY, _STEP)
+    demanded = demand_speeds(flight, start[:, None] - ages, values, len(constants))
+    weight = np.exp(-ages[:, None] / np.maximum(constants, 1e-4))
+    speeds: np.ndarray = np.sum(demanded * weight, axis=1) / np.sum(weight, axis=0)
+    return speeds
+
+
+def guess_speed(
+    flights: Sequence[PreparedFlight], rotors: Sequence[Rotor], weight: float
+) -> Dict[str, float]:
+    """Guess the map from the balance of thrust and weight in the mean of the flights.
+
+    Parameters
+    ----------
+    weight
+        Weight of the vehicle, N.
+    """
+    values = {"inputs.speed": 1.0, "inputs.exponent": 1.0, "inputs.battery": 0.5}
+    squares: List[float] = []
+    for flight in flights:
+        if flight.commands is None:
+            continue
+        time = np.arange(*flight.span, 0.02)
+        level = demand_speeds(flight, time, values, len(rotors))
+        squares.append(float(np.mean(level**2 @ [rotor.thrust_coefficient for rotor in rotors])))
+    if squares:
+        values["inputs.speed"] = float(np.sqrt(weight / np.mean(squares)))
+    return values
