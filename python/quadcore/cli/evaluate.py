@@ -93,8 +93,7 @@ def _make_plan(arguments: argparse.Namespace) -> Plan:
 
 
 def _show(evaluation: Evaluation, files: list[Path]) -> None:
-    from ..studies.evaluate.best_controllers import describe_seeds
-    from ..studies.evaluate.output import list_unstable_axes, summarise
+    from ..studies.evaluate.output import list_notes, list_unstable_axes, summarise
     from ..studies.evaluate.summary_table import choose_columns, format_rows
 
     console = terminal.make_console()
@@ -108,7 +107,7 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
         console.print("", _make_margin_table(evaluation))
     if len(lines) > _ROWS:
         console.print(f"{len(lines) - _ROWS} more combinations")
-    for note in describe_seeds(evaluation.groups):
+    for note in list_notes(evaluation):
         console.print(note)
     for cause in list_unstable_axes(evaluation):
         console.print(f"unstable: {cause}")

@@ -58,9 +58,10 @@ class Evaluation(NamedTuple):
     groups : list of dict
         Row per combination, over its seeds: flights, not_flown and failure_rate. For each of
         `JUDGED`, mean and interval (low, high) of the successful flights, and cvar, in which a
-        failure counts as infinite. Also the mean difference from the first controller, paired by
-        seed, with its interval and the number of pairs. is_random states whether seeds change the
-        flights (None if unknown). For is_best and p_best, see `mark_best`.
+        failure counts as infinite. The mean difference from the first controller, paired by seed,
+        with its interval and the number of pairs. Cohen's d of the differences of the last 10 s,
+        effect_size. is_random, whether seeds change the flights (None if unknown). For is_best and
+        p_best, see `mark_best`.
     margins : list of dict
         Row per controller, empty without a search; see `evaluate.margins`.
     poles : list of dict
@@ -245,6 +246,12 @@ def _compute_poles(plan: Plan) -> List[Dict[str, Any]]:
 
 
 def _pick_drawn(plan: Plan) -> Set[int]:
-    """Return the rows to draw: first seeds, at most `_DRAWN` of them, evenly spaced."""
-    firsts = range(0, len(plan), len(plan.seeds))
-    return {firsts[i] for i in pick_evenly(len(firsts), _DRAWN)}
+    """Return the rows to draw: first seeds of all flights on evenly spaced conditions.
+
+    The conditions are pairs of reference and point, as many as have at most `_DRAWN` flights.
+    """
+    pairs = [(case.reference, case.point) for case in plan]
+    every = list(dict.fromkeys(pairs))
+    flights = len(plan) // len(plan.seeds) // len(every)
+    shown = {every[i] for i in pick_evenly(len(every), max(1, _DRAWN // flights))}
+    return {row for row in range(0, len(plan), len(plan.seeds)) if pairs[row] in shown}

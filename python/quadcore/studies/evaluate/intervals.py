@@ -44,6 +44,13 @@ def compute_p_value(values: np.ndarray) -> float:
     return 2 * float(stdtr(len(values) - 1, -size))
 
 
+def compute_effect_size(differences: np.ndarray) -> float:
+    """Return Cohen's d of paired differences: mean over deviation; NaN for fewer than two."""
+    if len(differences) < 2 or np.ptp(differences) < EQUAL:
+        return math.nan
+    return float(differences.mean() / differences.std(ddof=1))
+
+
 def adjust_p_values(p_values: Sequence[float]) -> List[float]:
     """Adjust p-values of several comparisons (Holm, Scand. J. Statistics 6, 1979); NaN remains."""
     found = np.array(p_values, dtype=float)

@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Mapping, Sequence
 import numpy as np
 
 from ... import __version__
+from ...support.output_files import encode_text
 from ..output_folder import remove_plots, save_plots
 from ..table import (
     NOT_FLOWN,
@@ -23,10 +24,12 @@ from .best_controllers import describe_seeds
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
 from .margins import BOX, ENDS, format_margin
+from .paper_tables import make_latex, make_rows
 from .plan import Plan
 from .plots import draw, group_flights, is_plot, make_label, name_group
 from .poles import format_poles as poles_text
 from .poles import read_gains
+from .ranks import describe_ranks, rank_controllers
 from .scenario_effects import compute_scenario_effects
 from .summary_table import NAMES, choose_columns, format_error, format_rows
 
@@ -35,7 +38,9 @@ ROWS_OF_PAGE = 200
 _SWITCHES = ("feed_forward", "drag", "gyroscopic", "flat_rates", "integral", "lead")
 
 
-FILES = ("table.csv", "evaluation.json", "timing.csv", "report.html")
+FILES = (
+    "table.csv", "evaluation.json", "timing.csv", "comparison.csv", "comparison.tex", "report.html"
+)  # fmt: skip
 
 
 def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List[Path]:
@@ -59,6 +64,8 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
         "table.csv": make_csv(_table_rows(evaluation.table)),
         "evaluation.json": make_json(content),
         "timing.csv": make_csv(_timing_rows(evaluation, plan)),
+        "comparison.csv": make_csv(make_rows(evaluation.groups)),
+        "comparison.tex": encode_text(make_latex(evaluation.groups)),
     }
     written = save_files(folder, tables)
     images = draw(evaluation, plan.list_events()) if plots else {}
@@ -86,8 +93,9 @@ def _make_animations(evaluation: Evaluation, plan: Plan) -> List[Dict[str, Any]]
                 outcome.vehicle,
                 marks,
                 outcome.limit,
+                style,
             )
-            for label, outcome in flights
+            for label, outcome, style in flights
             if outcome.log is not None
         ]
         name = name_group(evaluation, reference, scenario)
@@ -96,11 +104,16 @@ def _make_animations(evaluation: Evaluation, plan: Plan) -> List[Dict[str, Any]]
 
 
 def _describe_omitted_flights(evaluation: Evaluation) -> str:
-    """State how many combinations the plots and animations show, unless they show all."""
-    shown, count = len(evaluation.drawn), len(evaluation.groups)
-    if shown in (0, count):
+    """State which figures are missing; "" if there is one per reference and scenario."""
+    shown = group_flights(evaluation)
+    every = dict.fromkeys((row["reference"], row["scenario"]) for row in evaluation.table)
+    missing = [name_group(evaluation, *pair) for pair in every if pair not in shown]
+    if not shown or not missing:
         return ""
-    return f"Plots and animations show {shown} of {count} combinations."
+    return (
+        f"Plots and animations show {len(shown)} of {len(every)} combinations of reference and "
+        f"scenario, each with all controllers. Omitted: {'; '.join(missing)}."
+    )
 
 
 def _list_settings(plan: Plan) -> List[Dict[str, str]]:
@@ -132,6 +145,19 @@ def _list_controllers(plan: Plan) -> List[Dict[str, Any]]:
 def summarise(evaluation: Evaluation) -> str:
     """Return the numbers of successful and failed flights in one line."""
     return count_outcomes([row["failure"] for row in evaluation.table])
+
+
+def list_notes(evaluation: Evaluation) -> List[str]:
+    """Return what the seeds permit, and the ranks of the controllers, in a few lines."""
+    ranks = describe_ranks(rank_controllers(evaluation.groups), CONFIDENCE)
+    return [*describe_seeds(evaluation.groups), *ranks]
+
+
+def _describe_ranks(evaluation: Evaluation) -> Dict[str, Any]:
+    """Return the ranks as plain values."""
+    ranks = rank_controllers(evaluation.groups)
+    pairs = [[*pair, p_value] for pair, p_value in ranks.post_hoc.items()]
+    return {**ranks._asdict(), "post_hoc": pairs}
 
 
 def list_unstable_axes(evaluation: Evaluation) -> List[str]:
@@ -179,6 +205,7 @@ def _make_content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
             for row, outcome in zip(evaluation.table, evaluation.outcomes)
         ],
         "losses": [_replace_infinity(row) for row in compute_scenario_effects(evaluation.groups)],
+        "ranks": _describe_ranks(evaluation),
         "combinations": [_replace_infinity(group) for group in evaluation.groups],
         "margins": [_replace_infinity(row) for row in evaluation.margins],
         "searched": {**ENDS, "box": BOX},
@@ -230,7 +257,7 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
         "shown": choose_columns(lines),
         "lines": lines[:ROWS_OF_PAGE],
         "more": max(0, len(evaluation.groups) - ROWS_OF_PAGE),
-        "notes": describe_seeds(evaluation.groups),
+        "notes": list_notes(evaluation),
         "failures": failures[:ROWS_OF_PAGE],
         "confidence": f"{100 * CONFIDENCE:g} %",
         "meanings": MEANINGS,

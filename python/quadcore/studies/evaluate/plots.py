@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -28,8 +28,18 @@ _ERROR = "tracking error (m), floor $10^{-7}$"
 _GROUP = ("controller", "reference", "engine", "model", "scenario")
 _MARGINS = {"left": 0.09, "right": 0.98, "bottom": 0.12}
 
-Flights = List[Tuple[str, Outcome]]
-"""Flights that share a figure, with their labels."""
+
+class DrawnFlight(NamedTuple):
+    """A flight in a figure."""
+
+    label: str
+    outcome: Outcome
+    style: int
+    """Number of its `curve_style`, the same in all figures and in the player."""
+
+
+Flights = List[DrawnFlight]
+"""Flights that share a figure."""
 
 
 def draw(
@@ -57,13 +67,19 @@ def draw(
         figures[f"rotors_{i}"] = _draw_rotors(name, flights)
         for kind in ("errors", "rotors"):
             mark_events(figures[f"{kind}_{i}"], (events or {}).get(scenario, ()))
-        if any(outcome.response is not None for _, outcome in flights):
+        if any(flight.outcome.response is not None for flight in flights):
             figures[f"response_{i}"] = _draw_responses(name, flights)
     if any(group["flights"] * (1 - group["failure_rate"]) > 1 for group in evaluation.groups):
         figures["seeds"] = _draw_boxes(evaluation)
     if evaluation.margins:
         figures["margins"] = _draw_margins(evaluation.margins)
-        figures["rates"] = _draw_rates(evaluation.margins)
+        controllers = [row["controller"] for row in evaluation.table]
+        styles = _number_styles(evaluation)
+        of_margins = [
+            styles[_name_curve(evaluation.table[controllers.index(row["controller"])], evaluation)]
+            for row in evaluation.margins
+        ]
+        figures["rates"] = _draw_rates(evaluation.margins, of_margins)
     return {name: png(figure) for name, figure in figures.items()}
 
 
@@ -87,19 +103,32 @@ def make_label(row: Mapping[str, Any], rows: Any, kinds: Sequence[str] = _GROUP)
 def group_flights(evaluation: Evaluation) -> Dict[Tuple[str, str], Flights]:
     """Group the flights with logs by reference and scenario, and label them."""
     found: Dict[Tuple[str, str], Flights] = {}
+    styles = _number_styles(evaluation)
     for row, outcome in evaluation.drawn.items():
         cells = evaluation.table[row]
-        label = make_label(cells, evaluation.table, ("controller", "engine", "model"))
-        if outcome.failure:
-            label += " (failed)"
-        found.setdefault((cells["reference"], cells["scenario"]), []).append((label, outcome))
+        label = _name_curve(cells, evaluation)
+        shown = label + " (failed)" * bool(outcome.failure)
+        flight = DrawnFlight(shown, outcome, styles[label])
+        found.setdefault((cells["reference"], cells["scenario"]), []).append(flight)
     return found
 
 
 def name_group(evaluation: Evaluation, reference: str, scenario: str) -> str:
-    """Name a group of `group_flights` for a title."""
+    """Name a group of `group_flights` for a title; of several seeds, the first one is shown."""
     has_scenarios = len({row["scenario"] for row in evaluation.table}) > 1
-    return f"{reference}, scenario {scenario}" if has_scenarios else reference
+    name = f"{reference}, scenario {scenario}" if has_scenarios else reference
+    seeds = [row["seed"] for row in evaluation.table]
+    return f"{name}, seed {seeds[0]}" if len(set(seeds)) > 1 else name
+
+
+def _name_curve(row: Mapping[str, Any], evaluation: Evaluation) -> str:
+    return make_label(row, evaluation.table, ("controller", "engine", "model"))
+
+
+def _number_styles(evaluation: Evaluation) -> Dict[str, int]:
+    """Give each curve of controller, engine and model a number."""
+    labels = dict.fromkeys(_name_curve(row, evaluation) for row in evaluation.table)
+    return {label: number for number, label in enumerate(labels)}
 
 
 def _rows_before_failure(outcome: Outcome) -> slice:
@@ -110,18 +139,18 @@ def _rows_before_failure(outcome: Outcome) -> slice:
 
 
 def _draw_tracks(name: str, flights: Flights) -> Figure:
-    room = _header_height(flights)
+    room = _header_height([flight.label for flight in flights])
     height = 3.6 + room
     figure = make_figure(f"Tracks: {name}", 8, height)
     margins = dict(_MARGINS, top=1 - room / height, bottom=0.5 / height, wspace=0.25)
     above, side = figure.subplots(1, 2, gridspec_kw=margins)
-    reference = next(outcome.log.topics["reference"] for _, outcome in flights if outcome.log)
+    reference = next(each.outcome.log.topics["reference"] for each in flights if each.outcome.log)
     for axes, (a, b) in ((above, "xy"), (side, "xz")):
         dress(axes)
-        for i, (label, outcome) in enumerate(flights):
+        for label, outcome, style in flights:
             assert outcome.log is not None
             at = dict(zip("xyz", outcome.log.position[_rows_before_failure(outcome)].T))
-            axes.plot(at[a], at[b], label=label, linewidth=1.2, **curve_style(i))
+            axes.plot(at[a], at[b], label=label, linewidth=1.2, **curve_style(style))
         axes.plot(reference[a], reference[b], zorder=3, **REFERENCE)
         axes.set_xlabel(f"{a} (m)")
         axes.set_ylabel(f"{b} (m)")
@@ -132,13 +161,17 @@ def _draw_tracks(name: str, flights: Flights) -> Figure:
 
 def _draw_errors(name: str, flights: Flights) -> Figure:
     title = f"Tracking error: {name}"
-    figure, grid = panels(title, 1, height=2.8, above=_header_height(flights))
+    figure, grid = panels(
+        title, 1, height=2.8, above=_header_height([flight.label for flight in flights])
+    )
     axes = grid[0, 0]
-    for i, (label, outcome) in enumerate(flights):
+    for label, outcome, style in flights:
         assert outcome.log is not None
         rows = _rows_before_failure(outcome)
         errors = np.maximum(compute_errors(outcome.log)[rows], _FLOOR)
-        axes.semilogy(outcome.log.time[rows], errors, label=label, linewidth=1, **curve_style(i))
+        axes.semilogy(
+            outcome.log.time[rows], errors, label=label, linewidth=1, **curve_style(style)
+        )
     axes.set_ylabel(_ERROR)
     axes.set_ylim(_FLOOR / 1.5, max(axes.get_ylim()[1], 1e4 * _FLOOR))
     _add_legend(figure, axes)
@@ -150,10 +183,10 @@ def _draw_rotors(name: str, flights: Flights) -> Figure:
     title = f"Rotor speed: {name}"
     if len(drawn) < len(flights):
         title += f" ({len(drawn)} of {len(flights)} flights)"
-    count = max(outcome.log.rotor_velocity.shape[1] for _, outcome in drawn if outcome.log)
-    room = 0.15 + _header_height([("rotor 1", None)] * count)
+    count = max(outcome.log.rotor_velocity.shape[1] for _, outcome, _ in drawn if outcome.log)
+    room = 0.15 + _header_height(["rotor 1"] * count)
     figure, grid = panels(title, len(drawn), height=1.3, above=room)
-    for axes, (label, outcome) in zip(grid[:, 0], drawn):
+    for axes, (label, outcome, _) in zip(grid[:, 0], drawn):
         assert outcome.log is not None
         rows = _rows_before_failure(outcome)
         speeds = np.abs(outcome.log.rotor_velocity[rows])
@@ -173,11 +206,13 @@ def _draw_rotors(name: str, flights: Flights) -> Figure:
 
 def _draw_responses(name: str, flights: Flights) -> Figure:
     title = f"Estimated step response: {name}"
-    figure, grid = panels(title, 1, height=2.8, above=_header_height(flights))
+    figure, grid = panels(
+        title, 1, height=2.8, above=_header_height([flight.label for flight in flights])
+    )
     axes = grid[0, 0]
-    for i, (label, outcome) in enumerate(flights):
+    for label, outcome, style in flights:
         if outcome.response is not None:
-            axes.plot(*outcome.response.T, label=label, linewidth=1.2, **curve_style(i))
+            axes.plot(*outcome.response.T, label=label, linewidth=1.2, **curve_style(style))
     axes.axhline(1, **REFERENCE)
     axes.set_ylim(-0.2, 1.8)
     axes.set_ylabel("position / step (1)")
@@ -243,14 +278,18 @@ def _draw_margins(rows: Any) -> Figure:
     return figure
 
 
-def _draw_rates(rows: Any) -> Figure:
-    room = _header_height([(row["controller"], None) for row in rows])
+def _draw_rates(rows: Any, styles: Sequence[int]) -> Figure:
+    room = _header_height([row["controller"] for row in rows])
     figure, grid = panels("RMS tracking error by update rate", 1, height=2.8, above=room)
     axes = grid[0, 0]
-    for i, row in enumerate(rows):
+    for row, style in zip(rows, styles):
         errors = [row.get(f"rms_at_{rate:g}_Hz", np.nan) for rate in RATES]
         axes.loglog(
-            RATES, np.maximum(errors, _FLOOR), marker="o", label=row["controller"], **curve_style(i)
+            RATES,
+            np.maximum(errors, _FLOOR),
+            marker="o",
+            label=row["controller"],
+            **curve_style(style),
         )
     axes.set_xlabel("update rate (Hz)")
     axes.set_ylabel(f"RMS {_ERROR}")
@@ -263,9 +302,9 @@ def _columns(labels: Sequence[str]) -> int:
     return max(1, min(6, 90 // (6 + max(map(len, labels), default=1))))
 
 
-def _header_height(flights: Sequence[Tuple[str, Any]]) -> float:
-    """Return the height of title and legend, inches."""
-    labels = [label for label, _ in flights] + ["reference"]
+def _header_height(labels: Sequence[str]) -> float:
+    """Return the height of title and legend of some curves and a reference, inches."""
+    labels = [*labels, "reference"]
     return 0.45 + 0.2 * -(-len(labels) // _columns(labels))
 
 

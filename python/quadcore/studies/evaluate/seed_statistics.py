@@ -10,7 +10,7 @@ import numpy as np
 from ..measured_flight import Outcome
 from ..tracking_metrics import UNITS
 from .best_controllers import RANKED, mark_best
-from .intervals import EQUAL, compute_cvar, compute_interval
+from .intervals import EQUAL, compute_cvar, compute_effect_size, compute_interval
 
 JUDGED = tuple(UNITS)
 """Metrics with statistics over the seeds."""
@@ -80,6 +80,8 @@ def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str
         row[f"difference_{name}"] = float(apart.mean()) if len(apart) else math.nan
         ends = compute_interval(apart[:0] if certain else apart)
         row[f"difference_low_{name}"], row[f"difference_high_{name}"] = ends
+        if name == RANKED:
+            row["effect_size"] = compute_effect_size(apart[:0] if certain else apart)
     return row
 
 
