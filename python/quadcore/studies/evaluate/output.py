@@ -31,6 +31,7 @@ from .poles import format_poles as poles_text
 from .poles import read_gains
 from .ranks import describe_ranks, rank_controllers
 from .scenario_effects import compute_scenario_effects
+from .step_error import measure_step_error
 from .summary_table import NAMES, choose_columns, format_error, format_rows
 
 ROWS_OF_PAGE = 200
@@ -59,7 +60,10 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
 
     remove_plots(folder, "evaluation.json", is_plot)
     # Results first: drawing is slow and can fail.
+    is_whole = all(row["failure"] != NOT_FLOWN for row in evaluation.table)
+    step_error = measure_step_error(plan) if is_whole else None
     content = _make_content(evaluation, plan)
+    content["step_error"] = None if step_error is None else step_error._asdict()
     tables = {
         "table.csv": make_csv(_table_rows(evaluation.table)),
         "evaluation.json": make_json(content),
@@ -73,6 +77,8 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     page = folder / "report.html"
     animations = _make_animations(evaluation, plan) if plots else []
     values = _page_values(evaluation, plan, images)
+    if step_error is not None:
+        values["notes"].append(step_error.describe())
     settings = _list_settings(plan)
     write_page(page, "evaluate.html", **values, animations=animations, settings=settings)
     return [*written, page]
