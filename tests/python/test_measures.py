@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from evaluations import evaluate
 from scipy import signal
+from scipy.spatial.transform import Rotation
 
 import quadcore as qc
 from quadcore.simulation.log import Log
@@ -88,6 +89,23 @@ def test_effort_and_energy_are_those_of_the_speeds_whatever_the_joints_are_slowe
     )
     for name in ("effort", "energy"):
         assert slowed[name] == pytest.approx(whole[name], rel=1e-12)
+
+
+def test_tilt_speed_and_rate_are_their_maxima():
+    time = np.linspace(0, 4, 401)
+    log = log_of(time, 0 * time, 0 * time)
+    half = 0.3 * np.sin(time) / 2  # of a tilt about an axis in the plane, after a turn about z
+    turn = np.stack(
+        [0 * half, 0 * half, np.full_like(half, np.sin(0.4)), np.full_like(half, np.cos(0.4))]
+    )
+    tilt = np.stack([np.sin(half) * 0.6, np.sin(half) * 0.8, 0 * half, np.cos(half)])
+    log.orientation[:] = (Rotation.from_quat(turn.T) * Rotation.from_quat(tilt.T)).as_quat()
+    log.linear_velocity[:] = np.outer(np.cos(time), [1, 2, 2])
+    log.angular_velocity[:] = np.outer(time, [0, 3, 4])
+    found = tracking_metrics.measure(log, 0, rotors_of(0, 0))
+    assert found["max_tilt"] == pytest.approx(0.3, rel=1e-4)
+    assert found["max_speed"] == pytest.approx(3)
+    assert found["max_rate"] == pytest.approx(20)
 
 
 def test_effort_does_not_depend_on_the_rows_of_the_log():

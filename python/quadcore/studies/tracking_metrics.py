@@ -10,7 +10,7 @@ import numpy as np
 from .._core import Rotor
 from ..simulation.log import Log
 from ..simulation.recording import TAIL
-from ..support.rotation import to_roll_pitch_yaw
+from ..support.rotation import compute_tilts, to_roll_pitch_yaw
 
 FAILURE_DISTANCE = 5.0
 """Tracking error at which a flight counts as failed, m."""
@@ -30,6 +30,9 @@ UNITS = {
     "command_effort": "rad/s^2",
     "saturated": "",
     "energy": "J",
+    "max_tilt": "rad",
+    "max_speed": "m/s",
+    "max_rate": "rad/s",
 }
 """Unit of each metric, by name."""
 
@@ -48,6 +51,9 @@ MEANINGS = {
     "command_effort": "mean rate of change of the commanded rotor speeds, over all steps",
     "saturated": "share of the controller updates that exceed a rotor limit",
     "energy": "energy of the aerodynamic torque on the rotors",
+    "max_tilt": "maximum angle between the z axes of frame and world",
+    "max_speed": "maximum speed of the frame's origin",
+    "max_rate": "maximum norm of the angular velocity",
 }
 
 _SETTLED = 0.02  # of a step
@@ -133,6 +139,9 @@ def measure(
         "command_effort": float(variation[1].mean() / span) if len(variation[1]) else math.nan,
         "saturated": saturated,
         "energy": _integrate(speeds**3 @ [rotor.torque_coefficient for rotor in rotors], time),
+        "max_tilt": float(compute_tilts(log.orientation).max()),
+        "max_speed": float(np.linalg.norm(log.linear_velocity, axis=1).max()),
+        "max_rate": float(np.linalg.norm(log.angular_velocity, axis=1).max()),
     }
 
 

@@ -25,6 +25,20 @@ def to_roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
     return np.stack([roll, pitch, yaw], axis=-1)
 
 
+def compute_tilts(orientation: np.ndarray) -> np.ndarray:
+    """Return the angles between the z axes of frame and world, rad.
+
+    Parameters
+    ----------
+    orientation : ndarray, shape (rows, 4)
+        Unit quaternions x, y, z, w of the frame in the world.
+    """
+    x, y = orientation[:, 0], orientation[:, 1]
+    # From the quaternion: exact near 0.
+    tilts: np.ndarray = 2 * np.arcsin(np.minimum(1, np.hypot(x, y)))
+    return tilts
+
+
 def unwrap_angles(angles: np.ndarray) -> np.ndarray:
     """Remove the jumps from roll, pitch and yaw of a motion.
 

@@ -7,7 +7,7 @@ from typing import Dict
 import numpy as np
 
 from ...simulation.log import Log
-from ...support.rotation import to_roll_pitch_yaw
+from ...support.rotation import compute_tilts, to_roll_pitch_yaw
 
 UNITS = {
     "final_x": "m",
@@ -39,8 +39,7 @@ MEANINGS = {
 
 def measure(log: Log) -> Dict[str, float]:
     """Compute the metrics in `UNITS`."""
-    x, y = log.orientation[:, 0], log.orientation[:, 1]
-    tilt = 2 * np.arcsin(np.minimum(1, np.hypot(x, y)))  # from the quaternion: exact near 0
+    tilt = compute_tilts(log.orientation)
     speed = np.linalg.norm(log.linear_velocity, axis=1)
     rate = np.linalg.norm(log.angular_velocity, axis=1)
     steps = np.linalg.norm(np.diff(log.position, axis=0), axis=1)
