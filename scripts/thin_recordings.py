@@ -3,7 +3,8 @@
 
 ``scripts/thin_recordings.py SOURCE``: SOURCE holds flights ``S*.csv.gz`` of the built-in
 quadrotor with their ``commands_S*.csv``, a folder ``cases/NAME`` for each flight of another model
-or world, and ``random/NAME`` for random vehicles. A folder has ``model.urdf``, ``case.world``,
+or world, ``random/NAME`` for random vehicles, and ``obstacles/NAME`` for contact with obstacles,
+with ``obstacles/summary.csv``. A folder has ``model.urdf``, ``case.world``,
 ``commands.csv``, ``params.txt``, ``record.csv.gz`` and Gazebo's conversion ``model.sdf``. The
 script copies all of it to ``tests/data/gazebo11``, with only some rows of the recordings. The
 output is bit-identical each time.
@@ -19,6 +20,7 @@ from pathlib import Path
 TARGET = Path(__file__).resolve().parents[1] / "tests" / "data" / "gazebo11"
 
 STRIDE = 25  # of the recorded rows
+OBSTACLE_STRIDE = 5  # of those with obstacles, which have fewer rows
 FIRST = range(1, 5)  # further rows, because all later steps depend on the first
 
 # Times at which a contact begins or ends, s; all rows near them are kept.
@@ -29,7 +31,7 @@ EVENTS = {
 NEAR = 0.0101
 
 
-def thin(source: Path, target: Path, events: tuple[float, ...] = ()) -> None:
+def thin(source: Path, target: Path, stride: int, events: tuple[float, ...] = ()) -> None:
     """Copy a recording, with some of its rows."""
     with gzip.open(source, "rt") as stream:
         header, *rows = stream.read().splitlines()
@@ -37,7 +39,7 @@ def thin(source: Path, target: Path, events: tuple[float, ...] = ()) -> None:
     for i, row in enumerate(rows):
         time = float(row.split(",", 1)[0])
         event = any(abs(time - at) < NEAR for at in events)
-        if i % STRIDE == 0 or i in FIRST or i == len(rows) - 1 or event:
+        if i % stride == 0 or i in FIRST or i == len(rows) - 1 or event:
             kept.append(row)
     # Without name and time in its header, the file depends only on the rows.
     with target.open("wb") as raw, gzip.GzipFile("", "wb", 9, raw, mtime=0) as stream:
@@ -55,7 +57,8 @@ def main() -> None:
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
         if path.name.endswith(".csv.gz"):
-            thin(path, target, EVENTS.get(path.parent.name, ()))
+            stride = OBSTACLE_STRIDE if "obstacles" in path.parts else STRIDE
+            thin(path, target, stride, EVENTS.get(path.parent.name, ()))
         else:
             shutil.copyfile(path, target)
 

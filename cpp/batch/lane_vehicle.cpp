@@ -28,7 +28,7 @@ class Rows {
 void put_gyrostat(const Model& model, const World& world, LaneVehicle& vehicle) {
   using Row = ConstantRow;
   const Gyrostat body(model);
-  if (world.ground_plane) vehicle.reach = CompliantGround(model, body).reach();
+  if (world.ground_plane) vehicle.reach = CompliantGround(model, body, world.ground).reach();
   vehicle.laws.upright = body.upright;
   vehicle.laws.normals_turn = body.normals_turn;
   Rows rows(vehicle.constants);
@@ -104,8 +104,9 @@ std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
   const std::size_t rotors = model.joints.size();
   const bool like_gazebo = simulation.engine_name() == "gazebo11";
   if (!(like_gazebo || simulation.engine_name() == "eigen") || !told.all_quiet ||
-      rotors > most_rotors || told.rotor_forces.size() > 1 || told.frame_drags.size() > 1 ||
-      told.airframes.size() > 1 || told.motor_torques.size() != 1) {
+      !simulation.world().obstacles.empty() || rotors > most_rotors ||
+      told.rotor_forces.size() > 1 || told.frame_drags.size() > 1 || told.airframes.size() > 1 ||
+      told.motor_torques.size() != 1) {
     return std::nullopt;
   }
   LaneVehicle vehicle{{}, unbounded, false, -unbounded, {}, {}, {}};

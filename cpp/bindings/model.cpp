@@ -230,6 +230,40 @@ void bind_vehicle(py::module_& m) {
       .def(by_document(&read_model));
 }
 
+const char* kind_name(const Obstacle& obstacle) {
+  switch (obstacle.kind) {
+    case ObstacleKind::box:
+      return "box";
+    case ObstacleKind::cylinder:
+      return "cylinder";
+    case ObstacleKind::sphere:
+      return "sphere";
+    case ObstacleKind::plane:
+      break;
+  }
+  return "plane";
+}
+
+void bind_obstacle(py::module_& m) {
+  py::class_<Obstacle>(m, "Obstacle", "Collision shape of a world that stands still.")
+      .def_readonly("model", &Obstacle::model, "Name of its model.")
+      .def_readonly("name", &Obstacle::name, "LINK::COLLISION.")
+      .def_property_readonly("kind", &kind_name, "box, cylinder, sphere or plane.")
+      .def_property_readonly(
+          "size", [](const Obstacle& o) -> Vector3d { return o.size; },
+          "Box x, y, z; cylinder radius, length; sphere radius, m; plane: normal; shape (3,).")
+      .def_property_readonly(
+          "position", [](const Obstacle& o) -> Vector3d { return o.position_W; },
+          "Position in the world, m; shape (3,). Only z of a plane has an effect.")
+      .def_property_readonly(
+          "orientation",
+          [](const Obstacle& o) -> Eigen::Vector4d { return o.orientation_W.coeffs(); },
+          "Orientation in the world, x, y, z, w; shape (4,).")
+      .def_readonly("where", &Obstacle::where, "FILE:LINE.")
+      .def("distance_to", &distance_to, py::arg("point"),
+           "Return the signed distance of a point (3,) from the surface, negative inside, m.");
+}
+
 void bind_world(py::module_& m) {
   py::class_<World, std::shared_ptr<World>>(m, "World", "Settings of a world file.")
       .def_property_readonly("gravity", get(&World::gravity_W),
@@ -245,6 +279,8 @@ void bind_world(py::module_& m) {
           "Steps per second of wall-clock time for nodes in real time; 0: as fast as possible.")
       .def_property_readonly("ground_plane", get(&World::ground_plane),
                              "Whether there is a ground plane at z = 0.")
+      .def_property_readonly("obstacles", get(&World::obstacles),
+                             "Obstacles other than that ground plane, a list of Obstacle.")
       .def_property_readonly("start_time", get(&World::start_time),
                              "Time at which a saved world starts (s).")
       .def_property_readonly("ignored_models", get(&World::ignored_models),
@@ -298,6 +334,7 @@ void bind_model(py::module_& m) {
   bind_documents(m);
   bind_bodies(m);
   bind_vehicle(m);
+  bind_obstacle(m);
   bind_world(m);
   bind_readers(m);
 }

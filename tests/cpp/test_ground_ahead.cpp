@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "ode/ground_contact.hpp"
+#include "ode/world_contact.hpp"
 #include "vehicle.hpp"
 
 using namespace quadcore;
@@ -30,8 +30,10 @@ bool is_ahead(double height, const Vector3d& v_W, const Vector3d& w_W, double gr
   dBodySetPosition(bodies[0], 5, 6, -100);   // without shapes
   dBodySetPosition(bodies[1], 5, 6, 1.2 + height);
   dBodySetLinearVel(bodies[1], v_W.x(), v_W.y(), v_W.z());
-  const GroundContact ground(boxed(), bodies, 1);
-  return ground.is_ahead(0.1, gravity_z);
+  World grounded;
+  grounded.ground_plane = true;
+  grounded.gravity_W.z() = gravity_z;
+  return WorldContact(boxed(), bodies, grounded).is_ahead(0.1);
 }
 
 /// Whether the box is seen ahead just below a height, and not just above.

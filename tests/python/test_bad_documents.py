@@ -300,7 +300,7 @@ WORLDS = {
         fault(GRAVITY, "<gravty>0 0 1</gravty>", "<gravty> in <world>", "Did you mean 'gravity'?"),
         fault(GRAVITY, '<atmosphere type="thick"/>', "atmosphere type 'thick'", "Use adiabatic"),
         fault(PHYSICS, '<physics type="bullet">', "physics type 'bullet'", "Use ode"),
-        fault(STEP, "<max_contacts>9</max_contacts>", "<max_contacts> is below 10", "Write 10"),
+        fault(STEP, "<max_contacts>2.5</max_contacts>", "<max_contacts> is out of range", "whole"),
         fault(
             "<sor>1.3</sor>",
             "<friction_model>cone_model</friction_model>",
@@ -336,7 +336,7 @@ WORLDS = {
             "'model://cessna' is not found",
             "to GAZEBO_MODEL_PATH",
         ),
-        fault(END, END + PLANE.replace("0 0 1", "0 1 1"), "the <plane> of model", "Remove it"),
+        fault(END, END + PLANE.replace("0 0 1", "0 0 0"), "<normal> is zero", "Write a direction"),
         fault(END, END + PLANE.replace("plane", "sphere").replace("true", "false"), "not static"),
         fault(
             END,
@@ -344,12 +344,7 @@ WORLDS = {
             "not static",
             "<static>true</static>",
         ),
-        fault(END, END + PLANE.replace("plane", "sphere"), "the <sphere> of model", "Remove it"),
-        fault(
-            END,
-            END + PLANE.replace("<link>", "<pose>0 0 1 0 0 0</pose><link>"),
-            "only a level ground plane at z = 0",
-        ),
+        fault(END, END + PLANE.replace("plane", "mesh"), "the shape <mesh>", "Use box, sphere"),
     ],
     "XML that is malformed or dangerous": [
         fault("</physics>", "</physic>", "malformed XML", "mismatched tag"),

@@ -4,7 +4,7 @@
 #include <limits>
 #include <sstream>
 
-#include "ground_surface.hpp"
+#include "contact_surface.hpp"
 #include "lowest_point.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin/world.hpp"
@@ -29,7 +29,7 @@ struct CompliantGround::Motion {
   Vector3d velocity(const Vector3d& q_W) const { return v_W + w_W.cross(q_W - p_W); }
 };
 
-CompliantGround::CompliantGround(const Model& model, const Gyrostat& body)
+CompliantGround::CompliantGround(const Model& model, const Gyrostat& body, const Surface& ground)
     : model_(model),
       weight_(World{}.gravity_W.norm() / body.inverse_mass),
       reach_(-std::numeric_limits<double>::infinity()) {
@@ -45,9 +45,9 @@ CompliantGround::CompliantGround(const Model& model, const Gyrostat& body)
       shape.reach = quadcore::reach(collision);
       shape.turns = i > 0 && !revolves(model, i, collision);
       shape.stable = stable[shapes_.size()];
-      shape.hardest = ground::stiffness_with(collision.surface);
-      shape.mu1 = ground::mu1_with(collision.surface);
-      shape.mu2 = ground::mu2_with(collision.surface);
+      shape.hardest = joint_stiffness(collision.surface, ground);
+      shape.mu1 = joint_mu1(collision.surface, ground);
+      shape.mu2 = joint_mu2(collision.surface, ground);
       shapes_.push_back(shape);
       const Vector3d p_CL = poses[i].translation() - body.p_FCcm_F;
       reach_ = std::max(reach_, p_CL.norm() + collision.pose.xyz.norm() + shape.reach);

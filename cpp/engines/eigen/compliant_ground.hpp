@@ -24,7 +24,7 @@ class CompliantGround {
  public:
   /// Throws InputError for a shape without contact model (a mesh). The model must outlive this
   /// object.
-  CompliantGround(const Model& model, const Gyrostat& body);
+  CompliantGround(const Model& model, const Gyrostat& body, const Surface& ground);
 
   /// Return whether the vehicle may touch the ground within dt [s], given the height [m] and upward
   /// velocity [m/s] of its centre of mass.

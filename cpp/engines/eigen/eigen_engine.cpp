@@ -29,6 +29,14 @@ void refuse_tags(const Model& model) {
   }
 }
 
+/// Reject obstacles, of which this engine models only the ground plane.
+void refuse_obstacles(const World& world) {
+  if (world.obstacles.empty()) return;
+  const Obstacle& first = world.obstacles.front();
+  throw InputError(first.where + ": the engine eigen does not model the obstacle '" + first.model +
+                   "'. Use the engine ode or gazebo11.");
+}
+
 /// Number of substeps at the ground, where impacts are faster than all other motion.
 constexpr int parts_at_ground = 4;
 
@@ -49,7 +57,8 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       given_rates_(model.joints.size()),
       reacting_(model.joints.size()) {
   refuse_tags(model_);
-  if (world.ground_plane) ground_.emplace(model_, body_);
+  refuse_obstacles(world);
+  if (world.ground_plane) ground_.emplace(model_, body_, world.ground);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
   RotorMotions& rotors = kinematics_.rotors;
   for (std::size_t i = 0; i < rotors.size(); ++i) {

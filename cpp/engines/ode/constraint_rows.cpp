@@ -134,7 +134,7 @@ void ConstraintRows::add_hinge(std::size_t index, double dt) {
 }
 
 void ConstraintRows::add_contact(const Contact& contact, double dt) {
-  const SurfacePair& surface = *contact.surface;
+  const SurfacePair& surface = contact.surface;
   const double hardness = dt * surface.stiffness + surface.damping;
   const double erp = dt * surface.stiffness / hardness, cfm = 1 / hardness;
   const Vector3d arm_W = contact.position_W - vec(dBodyGetPosition(bodies_[contact.body]));
@@ -149,14 +149,15 @@ void ConstraintRows::add_contact(const Contact& contact, double dt) {
   rows_.push_back(row);
 
   row.correction = 0;
-  row.cfm = 0;
   row.normal = normal;
   std::array<Vector3d, 2> along_W = {contact.fdir1_W, contact.normal_W.cross(contact.fdir1_W)};
   if (along_W[1].isZero(1e-12)) along_W = plane_space(contact.normal_W);
   const std::array<double, 2> friction = {surface.mu1, surface.mu2};
+  const std::array<double, 2> slip = {surface.slip1, surface.slip2};
   for (std::size_t i = 0; i < 2; ++i) {
     row.J[0] << along_W[i], arm_W.cross(along_W[i]);
     row.friction = friction[i];
+    row.cfm = slip[i] / dt;
     rows_.push_back(row);
   }
 }

@@ -30,21 +30,22 @@ struct HingePlace {
              const Matrix3d& R_WP);
 };
 
-/// Contact parameters of a shape with the ground.
+/// Contact parameters of two shapes.
 struct SurfacePair {
   double stiffness, damping;  ///< N/m, N s/m
   double mu1, mu2;            ///< friction along the first direction and across it
   double max_correction;      ///< limit of the correction in the solution for velocities [m/s]
+  double slip1, slip2;        ///< softness of the friction along and across [m/(N s)]
 };
 
-/// A point where a body touches the ground.
+/// A point where a body touches something that stands still.
 struct Contact {
   std::size_t body;
   Vector3d position_W;  ///< m
-  Vector3d normal_W;    ///< unit, out of the ground
+  Vector3d normal_W;    ///< unit, towards the body
   Vector3d fdir1_W;     ///< first direction of friction, any length; zero: ODE's choice
   double depth;         ///< depth of the penetration to correct [m]
-  const SurfacePair* surface;
+  SurfacePair surface;
 };
 
 /// One row J v = correction of the constraints between up to two bodies, in ODE's terms.

@@ -189,6 +189,15 @@ GazeboStep::Multipliers HingedVehicle::multipliers(std::size_t hinge) const {
           tau_W.dot(axis_W)};
 }
 
+Vector3d HingedVehicle::vector_of(std::size_t body, std::size_t row) const {
+  const double* const from = state_of(body) + row * widest_lanes;
+  return {from[0], from[widest_lanes], from[2 * widest_lanes]};
+}
+
+Vector3d HingedVehicle::position() const { return vector_of(0, BodyRow::position); }
+
+Vector3d HingedVehicle::velocity() const { return vector_of(0, BodyRow::velocity); }
+
 bool HingedVehicle::is_high(std::size_t i, double reach, double time, double gravity_z) const {
   const double* const rows = state_of(i);
   const double lowest = rows[(BodyRow::position + 2) * widest_lanes] - reach;

@@ -40,6 +40,10 @@ class HingedVehicle {
     for (std::size_t i = 0; i + 1 < flight_.tree.bodies; ++i) work(i, multipliers(i));
   }
 
+  /// Return the position of the frame's centre of mass in the world [m].
+  Vector3d position() const;
+  /// Return its velocity in world axes [m/s].
+  Vector3d velocity() const;
   /// Return the orientation of body i in the world.
   Matrix3d R_WB(std::size_t i) const;
 
@@ -61,6 +65,7 @@ class HingedVehicle {
 
   GazeboStep::Multipliers multipliers(std::size_t hinge) const;
   double* state_of(std::size_t body) const;
+  Vector3d vector_of(std::size_t body, std::size_t row) const;
   double* work_of(std::size_t body, std::size_t number) const;
 
   HingedModel model_;

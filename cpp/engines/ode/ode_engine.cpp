@@ -55,7 +55,6 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   const std::vector<dBodyID>& bodies = vehicle_->bodies();
   gyroscopic_ = std::make_unique<GyroscopicVehicle>(bodies_.model, bodies);
   const std::vector<Hinge> hinges = vehicle_->hinge_rows();
-  const double max_correction = world.contact_max_correcting_vel;
   std::vector<double> damping_factors;
   for (const Link& link : bodies_.model.links) damping_factors.push_back(link.tags.damping_factor);
   gazebo_step_ = std::make_unique<GazeboStep>(
@@ -66,9 +65,8 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
                           {world.erp, world.cfm, max_hinge_correction(world, recipe)},
                           damping_factors});
   for (const Hinge& hinge : hinges) rubs_ |= hinge.friction > 0;
-  if (world.ground_plane) {
-    ground_ = std::make_unique<GroundContact>(bodies_.model, bodies, max_correction);
-    gazebo_step_->reserve(ground_->most());
+  if (world.ground_plane || !world.obstacles.empty()) {
+    contact_ = std::make_unique<WorldContact>(bodies_.model, bodies, world);
     if (rubs_) vehicle_->report_hinge_forces();
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
@@ -98,12 +96,13 @@ void OdeEngine::choose_method(const World& world) {
   } else {
     method << "in flight the solution of ODE's direct solver";
   }
-  if (ground_)
-    method << "; on the ground " << world.solver_iterations << " iterations of Gazebo's solver";
+  if (contact_)
+    method << (world.obstacles.empty() ? "; on the ground " : "; in contact ")
+           << world.solver_iterations << " iterations of Gazebo's solver";
   method_ = method.str();
   may_float_ = recipe_.like_gazebo && !iterate_ && !rubs_;
   for (const Link& link : bodies_.model.links) may_float_ &= link.tags.damping_factor == 0;
-  if (ground_ && !quick) {
+  if (contact_ && !quick) {
     warnings_.push_back(world.solver_type_where +
                         ": the solver type world fails on the ground in Gazebo, so quick is used "
                         "there. Write quick.");
@@ -156,18 +155,22 @@ bool OdeEngine::float_by(double dt) {
 /// Return whether this step does not require the bodies in ODE.
 bool OdeEngine::is_afloat(double dt) const {
   if (!may_float_ || loads_.any_rate()) return false;
-  if (!ground_) return true;
+  if (!contact_) return true;
   if (steps_since_contact_ < steps_beside_contact) return false;
-  return std::all_of(ground_->reaches().begin(), ground_->reaches().end(), [&](const Reach& reach) {
-    return hinged_.is_high(reach.body, reach.length, steps_beside_contact * dt, gravity_z_);
-  });
+  const double time = steps_beside_contact * dt;
+  if (!contact_->is_clear(hinged_.position(), hinged_.velocity(), time)) return false;
+  if (!contact_->has_ground()) return true;
+  return std::all_of(contact_->reaches().begin(), contact_->reaches().end(),
+                     [&](const Reach& reach) {
+                       return hinged_.is_high(reach.body, reach.length, time, gravity_z_);
+                     });
 }
 
 /// Update the bodies in ODE.
 void OdeEngine::settle() const {
   if (!behind_) return;
   hinged_.give(vehicle_->bodies());
-  if (ground_) remember_hinge_forces();
+  if (contact_) remember_hinge_forces();
   behind_ = false;
 }
 
@@ -184,11 +187,12 @@ void OdeEngine::step_in_ode(double dt) {
   }
   recipe_.add_gyroscopic(*gyroscopic_, dt);
   static const std::vector<Contact> none;
-  const std::vector<Contact>& contacts = ground_ ? ground_->find() : none;
+  const std::vector<Contact>& contacts = contact_ ? contact_->find() : none;
+  gazebo_step_->reserve(contacts.size());
   if (iterate_ || is_near_contact(dt, !contacts.empty())) {
     gazebo_step_->step(contacts, dt);
   } else if (solve(dt)) {
-    if (ground_) remember_hinge_forces();
+    if (contact_) remember_hinge_forces();
     vehicle_->damp();
   } else {
     // Start from zero multipliers, so that the step depends only on pose and velocities, the
@@ -202,11 +206,11 @@ void OdeEngine::step_in_ode(double dt) {
 /// Return whether this step has contacts or follows such a step within the limit of Gazebo's
 /// sweeps.
 bool OdeEngine::is_near_contact(double dt, bool touching) {
-  if (!ground_) return false;
+  if (!contact_) return false;
   const bool after = steps_since_contact_ < steps_beside_contact;
   steps_since_contact_ = touching ? 0 : std::min(steps_since_contact_ + 1, steps_beside_contact);
   if (touching) return true;
-  return recipe_.like_gazebo && (after || ground_->is_ahead(steps_beside_contact * dt, gravity_z_));
+  return recipe_.like_gazebo && (after || contact_->is_ahead(steps_beside_contact * dt));
 }
 
 /// Take a step in flight; returns false if Gazebo limits the correction of a hinge. If ODE fails

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "gazebo_step.hpp"
-#include "ground_contact.hpp"
 #include "gyroscopic.hpp"
 #include "hinged_vehicle.hpp"
 #include "ode_vehicle.hpp"
 #include "quadcore/engine.hpp"
+#include "world_contact.hpp"
 
 namespace quadcore {
 
@@ -49,8 +49,8 @@ class OdeEngine final : public Engine {
   const Bodies& bodies() const { return bodies_; }
   /// Return whether only HingedVehicle moves it while it is well above the ground.
   bool may_float() const { return may_float_; }
-  /// Return the reach of its shapes, if there is a ground.
-  const std::vector<Reach>& reaches() const { return ground_->reaches(); }
+  /// Return the reach of its shapes, if the world has anything to touch.
+  const std::vector<Reach>& reaches() const { return contact_->reaches(); }
 
  private:
   struct FreeThreading {
@@ -88,7 +88,7 @@ class OdeEngine final : public Engine {
   bool may_float_ = false;  ///< see may_float()
   HingedVehicle hinged_;    ///< same motion as the bodies in ODE, possibly ahead of them
   mutable bool behind_ = false;            ///< whether the bodies in ODE are behind hinged_
-  std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
+  std::unique_ptr<WorldContact> contact_;  ///< null in a world without ground and obstacles
   int steps_since_contact_;                ///< counted only as far as it matters
   std::unique_ptr<GazeboStep> gazebo_step_;
   std::unique_ptr<GyroscopicVehicle> gyroscopic_;

@@ -14,8 +14,9 @@ from .. import __version__
 from .._core import InputError
 from ..formats.bag import is_ros2
 from ..model.description import read_model
+from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
-from ..report.drawn_vehicle import DrawnVehicle, DrawnWorld
+from ..report.drawn_vehicle import DrawnVehicle
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
@@ -94,7 +95,7 @@ def write_results(
         rows=rows,
         arguments=shlex.join(["quadcore", *arguments.words]),
         version=__version__,
-        player=make_section([flight], DrawnWorld(simulation.world.ground_plane)),
+        player=make_section([flight], draw_world(simulation.world)),
         plots=[(_PLOTS.get(file.stem, file.stem), file.read_bytes()) for file in plots],
     )
     return [*plots, page]

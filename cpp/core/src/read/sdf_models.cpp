@@ -208,10 +208,10 @@ class ModelReader {
         }
         continue;
       }
-      std::optional<StaticShape> shape = read_static_shape(xml, *e, scale);
+      std::optional<Obstacle> shape = read_obstacle(xml, *e, scale);
       if (!shape) continue;
       // A plane stands still in a free model, and where <pose> puts it, whatever the state says.
-      const bool is_plane = shape->kind == "plane";
+      const bool is_plane = shape->kind == ObstacleKind::plane;
       if (!is_static && !is_plane) {
         xml_.fail(given.include ? *given.include : *given.model,
                   "the model '" + model +
@@ -223,10 +223,13 @@ class ModelReader {
       const bool is_in_link =
           !pose || !pose->Attribute("relative_to") || is_at_most_sdf(xml, *e, 6);
       const Placement& base = is_plane ? written : X_WL;
-      shape->pose_W = is_in_link ? base * own : X_WL * frames.find_pose(link).inverse() * own;
+      const Placement pose_W =
+          is_in_link ? base * own : X_WL * frames.find_pose(link).inverse() * own;
+      shape->position_W = pose_W.position;
+      shape->orientation_W = pose_W.rotation;
       shape->model = model;
       shape->name = name_of(link) + "::" + name_of(*e);
-      found_.shapes.push_back(*shape);
+      found_.obstacles.push_back(*shape);
     }
   }
 

@@ -3,26 +3,15 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/obstacle.hpp"
 #include "sdf_pose.hpp"
 #include "xml.hpp"
 
 namespace quadcore {
 
-/// A collision shape of a world that stands still.
-struct StaticShape {
-  std::string model;  ///< "MODEL", or "MODEL::NESTED" for a nested model
-  std::string name;   ///< "LINK::COLLISION"
-  std::string kind;   ///< element in `<geometry>`
-  Vector3d size;      ///< box x, y, z; cylinder radius, length; sphere radius [m]; plane: normal
-  Placement pose_W;   ///< pose in the world; of a plane only z counts
-  Surface surface;    ///< contact parameters
-  std::string where;  ///< FILE:LINE
-};
-
 /// The models of a world.
 struct WorldModels {
-  std::vector<StaticShape> shapes;   ///< in the order of the file
+  std::vector<Obstacle> obstacles;   ///< in the order of the file
   std::vector<std::string> ignored;  ///< models that the user ignores, or URIs
   double start_time = 0;             ///< time at which a saved world starts [s]
 };

@@ -56,17 +56,13 @@ Surface read_static_surface(const Xml& xml, const Element& collision) {
 }
 
 /// Reject what would change a contact but is not modelled, unless the user ignores it.
-void refuse_unsupported_surface(const Xml& xml, const Element& collision) {
+void refuse_torsional_friction(const Xml& xml, const Element& collision) {
   const auto refuse = [&](const Element& e) {
     if (xml.ignored_elements().ignores({e.Name()})) return;
     xml.fail(e, "<" + std::string(e.Name()) + "> is not supported. Remove it." +
                     suggest_ignoring(e.Name()));
   };
   const Element* friction = descend(&collision, {"surface", "friction"});
-  for (const char* slip : {"slip1", "slip2"}) {
-    const Element* e = descend(friction, {"ode", slip});
-    if (e && !xml.text(*e).empty() && xml.number_in_text(*e) != 0) refuse(*e);
-  }
   const Element* torsional = descend(friction, {"torsional"});
   const Element* patch = descend(torsional, {"coefficient"});
   if (patch && !xml.text(*patch).empty()) refuse(*torsional);
@@ -78,8 +74,8 @@ bool is_true(const Xml& xml, const Element* e) {
 
 }  // namespace
 
-std::optional<StaticShape> read_static_shape(const Xml& xml, const Element& collision,
-                                             const Vector3d& scale) {
+std::optional<Obstacle> read_obstacle(const Xml& xml, const Element& collision,
+                                      const Vector3d& scale) {
   const Element* geometry = descend(&collision, {"geometry"});
   const Element* kind = geometry ? geometry->FirstChildElement() : nullptr;
   if (!kind || kind->Name() == std::string("empty")) return {};
@@ -88,33 +84,41 @@ std::optional<StaticShape> read_static_shape(const Xml& xml, const Element& coll
   // Every other shape has the bits 0xffff.
   if (std::fmod(number_or(xml, contact, "collide_bitmask", 1), 65536.0) == 0) return {};
 
-  StaticShape shape;
-  shape.kind = kind->Name();
+  Obstacle shape;
   shape.where = xml.where(*kind);
-  shape.size = Vector3d::Zero();
-  if (shape.kind == "box") {
-    shape.size.setOnes();
+  const std::string name = kind->Name();
+  if (name == "box") {
+    shape.kind = ObstacleKind::box;
     const Element* size = descend(kind, {"size"});
     if (size && !xml.text(*size).empty()) shape.size = xml.vector_in_text(*size);
     if (!(shape.size.minCoeff() > 0)) {
       xml.fail(size ? *size : *kind, "<size> is not positive. Correct it.");
     }
     shape.size = shape.size.cwiseProduct(scale);
-  } else if (shape.kind == "sphere") {
-    shape.size[0] = length_or(xml, *kind, "radius", 1) * scale.maxCoeff();
-  } else if (shape.kind == "cylinder") {
-    shape.size[0] = length_or(xml, *kind, "radius", 1) * std::max(scale.x(), scale.y());
-    shape.size[1] = length_or(xml, *kind, "length", 1) * scale.z();
-  } else if (shape.kind == "plane") {
+  } else if (name == "sphere") {
+    shape.kind = ObstacleKind::sphere;
+    shape.size = {length_or(xml, *kind, "radius", 1) * scale.maxCoeff(), 0, 0};
+  } else if (name == "cylinder") {
+    shape.kind = ObstacleKind::cylinder;
+    shape.size = {length_or(xml, *kind, "radius", 1) * std::max(scale.x(), scale.y()),
+                  length_or(xml, *kind, "length", 1) * scale.z(), 0};
+  } else if (name == "plane") {
+    shape.kind = ObstacleKind::plane;
     shape.size = Vector3d::UnitZ();
     const Element* normal = descend(kind, {"normal"});
     if (normal && !xml.text(*normal).empty()) shape.size = xml.vector_in_text(*normal);
     if (!(shape.size.norm() > 0)) {
       xml.fail(*normal, "<normal> is zero. Write a direction, such as 0 0 1.");
     }
+  } else {
+    xml.fail(*kind, "an obstacle of the shape <" + name +
+                        "> is not supported. Use box, sphere, cylinder or plane.");
   }
   shape.surface = read_static_surface(xml, collision);
-  refuse_unsupported_surface(xml, collision);
+  const Element* friction = descend(&collision, {"surface", "friction", "ode"});
+  shape.slip1 = coefficient_or(xml, friction, "slip1", 0);
+  shape.slip2 = coefficient_or(xml, friction, "slip2", 0);
+  refuse_torsional_friction(xml, collision);
   return shape;
 }
 

@@ -6,9 +6,10 @@
 
 namespace quadcore {
 
-/// Read a `<collision>` without its pose and names. Empty if nothing collides with it.
+/// Read a `<collision>` without its pose and names. Empty if nothing collides with it. Throws
+/// InputError for a shape that is not supported.
 /// \param scale  scale of the model's shapes
-std::optional<StaticShape> read_static_shape(const Xml& xml, const Xml::Element& collision,
-                                             const Vector3d& scale);
+std::optional<Obstacle> read_obstacle(const Xml& xml, const Xml::Element& collision,
+                                      const Vector3d& scale);
 
 }  // namespace quadcore

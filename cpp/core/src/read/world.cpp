@@ -41,6 +41,13 @@ std::set<std::string> attributes_of(const std::string& element) {
   return {};
 }
 
+/// Return whether an obstacle is the ground: a level plane at z = 0.
+bool is_ground(const Obstacle& obstacle) {
+  return obstacle.kind == ObstacleKind::plane && obstacle.position_W.z() == 0 &&
+         obstacle.size.normalized() == Vector3d::UnitZ() && obstacle.slip1 == 0 &&
+         obstacle.slip2 == 0;
+}
+
 /// Reads the elements of a world file into a World.
 class WorldReader {
  public:
@@ -254,8 +261,8 @@ class WorldReader {
               [this](const Element& e) { skip_plugin(xml_, e); }),
         other(
             "model",
-            "a static model with a level ground plane at z = 0; the second of two models with one "
-            "name is ignored; a model without collision shapes is ignored",
+            "a static model of boxes, cylinders, spheres and planes; the second of two models with "
+            "one name is ignored; a model without collision shapes is ignored",
             ignored),
         other("physics", "attribute `type`, if given, must be `ode`; also written `physics:ode`",
               physics),
@@ -283,8 +290,7 @@ class WorldReader {
         number("physics/real_time_factor", "", real_time_factor_, {},
                "no effect, as in Gazebo; use `real_time_update_rate`"),
         other("physics/max_contacts",
-              "upper limit of the contact points of a pair of shapes, a whole number from 10 on; "
-              "then it has no effect",
+              "upper limit of the contact points of a pair of shapes, a whole number",
               [this](const Element& e) { read_max_contacts(e); }),
         word(T::choice("physics/ode/solver/friction_model", {"pyramid_model"},
                        "model of dry friction")),
@@ -350,10 +356,12 @@ class WorldReader {
   }
 
   void read_max_contacts(const Element& e) {
-    if (is_empty(e) || xml_.number_in_text(e) >= Surface().max_contacts) return;
-    if (xml_.ignored_elements().ignores({e.Name()})) return;
-    xml_.fail(e, "<max_contacts> is below 10, which is not supported. Write 10 or more." +
-                     suggest_ignoring(e.Name()));
+    if (is_empty(e)) return;
+    const double value = xml_.number_in_text(e);
+    if (!(value >= 0 && value <= 1e6) || value != std::floor(value)) {
+      xml_.fail(e, "<max_contacts> is out of range. Use a whole number from 0 to 1000000.");
+    }
+    world_.max_contacts = static_cast<int>(value);
   }
 
   void read_atmosphere(const Element& atmosphere) {
@@ -365,15 +373,13 @@ class WorldReader {
     const WorldModels models = read_models(xml_, world);
     world_.start_time = models.start_time;
     world_.ignored_models = models.ignored;
-    for (const StaticShape& shape : models.shapes) {
-      const bool is_level = shape.kind == "plane" && shape.size.normalized() == Vector3d::UnitZ();
-      if (!is_level || shape.pose_W.position.z() != 0) {
-        throw InputError(shape.where + ": the <" + shape.kind + "> of model '" + shape.model +
-                         "' is an obstacle, but only a level ground plane at z = 0 is supported. "
-                         "Remove it." +
-                         (shape.model.empty() ? "" : suggest_ignoring(shape.model)));
+    for (const Obstacle& obstacle : models.obstacles) {
+      if (world_.ground_plane || !is_ground(obstacle)) {
+        world_.obstacles.push_back(obstacle);
+        continue;
       }
       world_.ground_plane = true;
+      world_.ground = obstacle.surface;
     }
   }
 

@@ -73,6 +73,13 @@ Facts facts_of(const World& world) {
   add(facts, "atmosphere", {air.temperature, air.temperature_gradient, air.pressure});
   add(facts, "magnetic field", numbers(world.magnetic_field_W));
   add(facts, "ground plane", {world.ground_plane ? 1.0 : 0.0});
+  for (const Obstacle& obstacle : world.obstacles) {
+    const std::string who = "obstacle " + obstacle.model + "::" + obstacle.name;
+    add(facts, who + " kind", {static_cast<double>(obstacle.kind)});
+    add(facts, who + " size", numbers(obstacle.size));
+    add(facts, who + " position", numbers(obstacle.position_W));
+    add(facts, who + " orientation", numbers(obstacle.orientation_W.toRotationMatrix()));
+  }
   facts.push_back({"solver", {}, world.solver_type});
   add(facts, "iters", {static_cast<double>(world.solver_iterations)});
   add(facts, "sor", {world.solver_sor});

@@ -82,10 +82,12 @@ class _Motion:
 
 def check(simulation: Simulation) -> None:
     """Raise `InputError` if a force acts on the vehicle that chapter 2 does not have."""
-    if simulation.world.ground_plane:
+    world = simulation.world
+    if world.ground_plane or world.obstacles:
+        solid = "a ground plane" if world.ground_plane else "obstacles"
         raise InputError(
-            f"engine {LAGRANGE}: the mathematical model has no contact, but the world has a ground "
-            "plane. Use a world without one, such as empty."
+            f"engine {LAGRANGE}: the mathematical model has no contact, but the world has {solid}. "
+            "Use a world without one, such as empty."
         )
     air = find_air_plugin(simulation)
     for plugin in simulation.plugins:

@@ -7,6 +7,7 @@
 #include "quadcore/plugin/document.hpp"
 #include "quadcore/plugin/export.hpp"
 #include "quadcore/plugin/ignored_elements.hpp"
+#include "quadcore/plugin/obstacle.hpp"
 #include "quadcore/plugin/spatial.hpp"
 #include "quadcore/plugin/tags.hpp"
 
@@ -48,8 +49,12 @@ struct World {
   double cfm = 0;                       ///< ODE's constraint force mixing, the compliance of hinges
   double contact_max_correcting_vel = 100;  ///< m/s; also rad/s for hinges
   bool ground_plane = false;                ///< whether there is ground at z = 0
-  Vector3d wind_W{0, 0, 0};                 ///< velocity of the air [m/s]
-  Atmosphere atmosphere;                    ///< air at z = 0
+  /// Contact parameters of that ground; the default is that of `model://ground_plane`.
+  Surface ground = {100, 50};
+  int max_contacts = 20;            ///< maximum number of points at which a pair of shapes touches
+  std::vector<Obstacle> obstacles;  ///< all others that stand still, in the order of the file
+  Vector3d wind_W{0, 0, 0};         ///< velocity of the air [m/s]
+  Atmosphere atmosphere;            ///< air at z = 0
   Vector3d magnetic_field_W{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< x east, y north, z up [T]
   Origin origin;                                                  ///< position on Earth
   double start_time = 0;                    ///< time at which a saved world starts [s]

@@ -1,0 +1,25 @@
+"""Obstacles of a world as the player draws them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .._core import World
+from ..report.drawn_vehicle import DrawnShape, DrawnWorld
+from ..support.rotation import to_matrix
+
+_LENGTHS = {"box": 3, "cylinder": 2, "sphere": 1}
+
+
+def draw_world(world: World) -> DrawnWorld:
+    """Return the ground and the obstacles of a world. Planes, which are infinite, are left out."""
+    shapes = []
+    for obstacle in world.obstacles:
+        if obstacle.kind not in _LENGTHS:
+            continue
+        pose = np.eye(4)
+        pose[:3, :3] = to_matrix(obstacle.orientation)
+        pose[:3, 3] = obstacle.position
+        size = tuple(obstacle.size[: _LENGTHS[obstacle.kind]])
+        shapes.append(DrawnShape(obstacle.kind, size, pose))
+    return DrawnWorld(world.ground_plane, shapes)
