@@ -16,7 +16,7 @@ from ..formats.bag import is_ros2
 from ..model.description import read_model
 from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
-from ..report.drawn_vehicle import DrawnVehicle
+from ..report.drawn_vehicle import DrawnVehicle, DrawnWorld
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
