@@ -63,7 +63,7 @@ std::string box_model(const std::string& name, const std::string& pose,
 void check_near(const Vector3d& a, const Vector3d& b) { CHECK((a - b).norm() < 1e-12); }
 
 /// The shape of a plane model; its normal, and z of its pose.
-StaticShape plane_of(const std::string& inside) { return read_inside(inside).models.shapes.at(0); }
+Obstacle plane_of(const std::string& inside) { return read_inside(inside).models.obstacles.at(0); }
 
 }  // namespace
 
@@ -73,10 +73,10 @@ TEST_CASE("poses of model, link and collision are composed") {
       "<model name='m'><static>true</static><pose>1 2 0 0 0 1.5707963267948966</pose>"
       "<link name='l'><pose>1 0 0 0 1.5707963267948966 0</pose>" +
       collision("<box/>", pose) + "</link></model>");
-  const StaticShape& box = reading.models.shapes.at(0);
+  const Obstacle& box = reading.models.obstacles.at(0);
   // Turned by yaw, the link is at (1, 3, 0); its z axis, pitched first, points to the world's y.
-  check_near(box.pose_W.position, {1, 6, 0});
-  check_near(box.pose_W.rotation * Vector3d::UnitZ(), {0, 1, 0});
+  check_near(box.position_W, {1, 6, 0});
+  check_near(box.orientation_W * Vector3d::UnitZ(), {0, 1, 0});
   CHECK(box.model == "m");
   CHECK(box.name == "l::c");
   CHECK(box.size == Vector3d::Ones());  // SDF's default
@@ -94,9 +94,9 @@ TEST_CASE("state wins over pose, wherever it stands") {
         box_model("m", "1 0 0 0 0 0", "0 1 0 0 0 0") + box_model("kept", "3 0 0 0 0 0");
     const WorldModels read = read_inside(first ? state + models : models + state).models;
     CHECK(read.start_time == 12.34);
-    check_near(read.shapes.at(0).pose_W.position, {5, 1, 0});
-    check_near(read.shapes.at(0).size, {2, 2, 9});
-    check_near(read.shapes.at(1).pose_W.position, {3, 0, 0});
+    check_near(read.obstacles.at(0).position_W, {5, 1, 0});
+    check_near(read.obstacles.at(0).size, {2, 2, 9});
+    check_near(read.obstacles.at(1).position_W, {3, 0, 0});
   }
 }
 
@@ -108,12 +108,12 @@ TEST_CASE("the state of a link alone moves the model") {
   const auto place = [&](const std::string& link) {
     return read_inside(two_links + "<state><model name='m'><link name='" + link +
                        "'><pose>10 0 0 0 0 0</pose></link></model></state>")
-        .models.shapes;
+        .models.obstacles;
   };
-  check_near(place("a").at(0).pose_W.position, {10, 0, 0});
-  check_near(place("a").at(1).pose_W.position, {9, 1, 0});
-  check_near(place("b").at(0).pose_W.position, {1, 0, 0});
-  check_near(place("b").at(1).pose_W.position, {10, 0, 0});
+  check_near(place("a").at(0).position_W, {10, 0, 0});
+  check_near(place("a").at(1).position_W, {9, 1, 0});
+  check_near(place("b").at(0).position_W, {1, 0, 0});
+  check_near(place("b").at(1).position_W, {10, 0, 0});
 }
 
 TEST_CASE("insertions are added and deletions removed") {
@@ -122,9 +122,9 @@ TEST_CASE("insertions are added and deletions removed") {
                   "<state><insertions>" + box_model("c", "3 0 0 0 0 0") +
                   "</insertions><deletions><name>a</name></deletions></state>")
           .models;
-  REQUIRE(read.shapes.size() == 2);
-  CHECK(read.shapes[0].model == "b");
-  CHECK(read.shapes[1].model == "c");
+  REQUIRE(read.obstacles.size() == 2);
+  CHECK(read.obstacles[0].model == "b");
+  CHECK(read.obstacles[1].model == "c");
 }
 
 TEST_CASE("of a plane only the normal and z count, and no state moves it") {
@@ -136,9 +136,9 @@ TEST_CASE("of a plane only the normal and z count, and no state moves it") {
   const std::string state = "<state><model name='p'><pose>0 0 9 0 0 0</pose></model></state>";
   for (const std::string fixed : {"1", "0"}) {  // in a free model it stands still all the same
     for (const std::string& inside : {plane(fixed), plane(fixed) + state}) {
-      const StaticShape shape = plane_of(inside);
+      const Obstacle shape = plane_of(inside);
       CHECK(shape.size == Vector3d::UnitX());
-      CHECK(shape.pose_W.position.z() == 0.5);
+      CHECK(shape.position_W.z() == 0.5);
     }
   }
 }
@@ -150,12 +150,12 @@ TEST_CASE("the second of two models with one name is dropped, with a warning") {
                   "<include><uri>model://ground_plane</uri></include>"
                   "<include><uri>model://ground_plane</uri><name>other</name>"
                   "<pose>0 0 -1 0 0 0</pose></include>");
-  REQUIRE(reading.models.shapes.size() == 3);
-  CHECK(reading.models.shapes[0].pose_W.position.x() == 1);
-  CHECK(reading.models.shapes[1].model == "ground_plane");
-  CHECK(reading.models.shapes[1].surface.mu1 == 100);
-  CHECK(reading.models.shapes[2].model == "other");
-  CHECK(reading.models.shapes[2].pose_W.position.z() == -1);
+  REQUIRE(reading.models.obstacles.size() == 3);
+  CHECK(reading.models.obstacles[0].position_W.x() == 1);
+  CHECK(reading.models.obstacles[1].model == "ground_plane");
+  CHECK(reading.models.obstacles[1].surface.mu1 == 100);
+  CHECK(reading.models.obstacles[2].model == "other");
+  CHECK(reading.models.obstacles[2].position_W.z() == -1);
   CHECK(has(reading.ignored.warning(), "a second model 'm' (a.world:2)"));
   CHECK(has(reading.ignored.warning(), "a second model 'ground_plane'"));
 }
@@ -189,8 +189,8 @@ TEST_CASE("a nested model collides, and stands still with its parent") {
                                "<model name='inner'><pose>0 2 0 0 0 0</pose><link name='l'>" +
                                collision("<sphere/>") + "</link></model></model>")
                                .models;
-  CHECK(read.shapes.at(0).model == "outer::inner");
-  check_near(read.shapes[0].pose_W.position, {1, 2, 0});
+  CHECK(read.obstacles.at(0).model == "outer::inner");
+  check_near(read.obstacles[0].position_W, {1, 2, 0});
   const std::string moves = refusal_inside(
       "<model name='outer'><static>1</static><model name='inner'><static>0</static><link "
       "name='l'>" +
@@ -206,8 +206,8 @@ TEST_CASE("frames are resolved from SDF 1.7 on, and ignored before") {
       "<frame name='g'><pose>0 1 0 0 0 0</pose></frame>"
       "<link name='l'><pose relative_to='g'>0 1 0 0 0 0</pose>" +
       collision("<sphere/>", "<pose relative_to='g'>0 0 1 0 0 0</pose>") + "</link></model>";
-  check_near(read_inside(inside, "1.7").models.shapes.at(0).pose_W.position, {1, 1, 6});
-  check_near(read_inside(inside, "1.6").models.shapes.at(0).pose_W.position, {1, 1, 1});
+  check_near(read_inside(inside, "1.7").models.obstacles.at(0).position_W, {1, 1, 6});
+  check_near(read_inside(inside, "1.6").models.obstacles.at(0).position_W, {1, 1, 1});
   const std::string loop =
       "<model name='m'><static>1</static><frame name='a'><pose relative_to='b'/></frame>"
       "<frame name='b'><pose relative_to='a'/></frame><link name='l'><pose relative_to='a'/></link>"
@@ -230,7 +230,7 @@ TEST_CASE("models that nothing feels are accepted, others name the remedy") {
                 "<surface><contact><collide_bitmask>0</collide_bitmask></contact>"
                 "</surface>") +
       collision("<empty/>") + "</link></model><light/><actor/><road/>";
-  CHECK(read_inside(felt_by_nothing).models.shapes.empty());
+  CHECK(read_inside(felt_by_nothing).models.obstacles.empty());
 
   const std::string free =
       "\n<model name='crate'><link name='l'>" + collision("<box/>") + "</link></model>";
@@ -305,5 +305,5 @@ TEST_CASE("models are included from GAZEBO_MODEL_PATH") {
 TEST_CASE("ten thousand obstacles are read") {
   std::string inside;
   for (int i = 0; i < 10000; ++i) inside += box_model("b" + std::to_string(i), "1 0 0 0 0 0");
-  CHECK(read_inside(inside).models.shapes.size() == 10000);
+  CHECK(read_inside(inside).models.obstacles.size() == 10000);
 }
