@@ -1,10 +1,15 @@
 #include "quadcore/batch.hpp"
 
 #include <algorithm>
+#include <thread>
 
+#include "guided_block.hpp"
 #include "lane_blocks.hpp"
 #include "members.hpp"
+#include "quadcore/control/guided_controller.hpp"
+#include "quadcore/control/schedule.hpp"
 #include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/random.hpp"
 #include "side_by_side.hpp"
 
 namespace quadcore {
@@ -25,6 +30,8 @@ struct BatchSnapshot::Content {
   std::vector<double> commands;
   std::vector<char> is_commanded;
   std::vector<std::string> failures;
+  std::vector<int> placements;
+  std::vector<double> places;
   std::vector<Vehicle> vehicles;
 };
 
@@ -44,6 +51,7 @@ class Batch::Implementation {
     is_commanded_.resize(size());
     commands_.resize(size() * command_width());
     failures_.resize(size());
+    placements_.resize(size());
     lanes_ = std::make_unique<LaneBlocks>(crew.in_lanes, common_.rotors(), world);
     for (std::size_t i = 0; i < size(); ++i) begin(i);
   }
@@ -86,6 +94,83 @@ class Batch::Implementation {
     });
   }
 
+  void follow(const std::vector<BatchGuide>& guides, const std::string& odometry,
+              std::int64_t steps, std::int64_t log_every, std::vector<BatchGuided>& guided,
+              const std::function<void()>& poll) {
+    check_start();
+    const std::thread::id caller = std::this_thread::get_id();
+    for_each_block([&](std::size_t block, std::size_t first, std::size_t end, double* work) {
+      if (std::this_thread::get_id() == caller) poll();
+      std::vector<batch::Follower> followers;
+      std::vector<std::size_t> apart;
+      for (std::size_t i = first; i < end; ++i) {
+        if (!failures_[i].empty()) continue;
+        come_back(i);
+        const batch::LaneSensor* sensor = find_sensor(i, odometry);
+        if (sensor && lanes_->flies(i)) {
+          followers.push_back(make_follower(i, *sensor, guides[i], guided[i]));
+        } else {
+          apart.push_back(i);
+          lanes_->let_fly(i, false);
+        }
+      }
+      if (!followers.empty()) {
+        batch::GuidedBlock(*lanes_, block, dt(), work).advance(followers, steps, log_every);
+      }
+      for (const batch::Follower& follower : followers) {
+        if (follower.has_left) {
+          apart.push_back(follower.vehicle);
+          continue;
+        }
+        steps_[follower.vehicle] += steps;
+        if (!follower.speeds.empty()) note_command(follower.vehicle, follower.speeds.data());
+      }
+      for (const std::size_t i : apart) {
+        follow_apart(i, guides[i], odometry, steps, log_every, guided[i]);
+      }
+    });
+  }
+
+  void follow_together(const CommandAll& command_all, double rate, double delay,
+                       const std::string& odometry, std::int64_t steps, std::int64_t log_every,
+                       std::vector<BatchGuided>& guided) {
+    check_start();
+    for (std::size_t i = 0; i < size(); ++i) {
+      come_back(i);
+      if (!members_[i].in_lanes || find_sensor(i, odometry)) continue;
+      throw InputError("vehicle " + std::to_string(i) + " measures topic '" + odometry +
+                       "' in a way that batches do not model. Simulate it alone.");
+    }
+    const control::Schedule schedule(rate, delay, size() * command_width());
+    std::vector<double> pending(schedule.state_size()), states(size() * state_width()),
+        measured(size() * Batch::odometry_width);
+    std::vector<control::TotalVariation> rates(size(), control::TotalVariation(common_.rotors())),
+        commands(size(), control::TotalVariation(command_width()));
+    get_state(states.data());
+    log_all(guided, states);
+    note_rates(states, rates);
+    for (std::int64_t done = 0; done < steps;) {
+      const auto now = static_cast<double>(done);
+      const double* const speeds =
+          schedule.update(now, dt(), pending.data(), [&](double, double* asked) {
+            measure_all(odometry, measured.data());
+            command_all(now * dt(), measured.data(), asked);
+          });
+      for (std::size_t i = 0; speeds && i < size(); ++i) {
+        if (failures_[i].empty()) commands[i].add(speeds + i * command_width());
+      }
+      step(speeds, 1);
+      ++done;
+      get_state(states.data());
+      if (done % log_every == 0) log_all(guided, states);
+      note_rates(states, rates);
+    }
+    for (std::size_t i = 0; i < size(); ++i) {
+      guided[i].rate_variation = rates[i].sums();
+      guided[i].command_variation = commands[i].sums();
+    }
+  }
+
   void get_state(double* rows) const {
     for_each_block([&](std::size_t block, std::size_t first, std::size_t end, double* work) {
       lanes_->show(block, end - first, work, rows + first * state_width());
@@ -103,10 +188,12 @@ class Batch::Implementation {
       states.push_back(batch::taken(rows + i * state_width(), rotors));
       batch::check(states.back(), i);
     }
+    places_.assign(rows, rows + size() * state_width());
     std::unique_ptr<Simulation> alike;  // of the previous vehicle
     for (std::size_t i = 0; i < size(); ++i) {
       Member& member = members_[i];
       failures_[i].clear();
+      placements_[i] = steps_[i] == 0 && placements_[i] >= 0 ? placements_[i] + 1 : -1;
       steps_[i] = 0;
       if (!member.in_lanes) {
         go_apart(i).set_state(states[i]);
@@ -138,6 +225,8 @@ class Batch::Implementation {
     taken->commands = commands_;
     taken->is_commanded = is_commanded_;
     taken->failures = failures_;
+    taken->placements = placements_;
+    taken->places = places_;
     for (const Member& member : members_) {
       taken->vehicles.push_back({member.made_of.seed, member.warnings, {}});
       if (member.apart) taken->vehicles.back().apart = member.apart->snapshot();
@@ -155,6 +244,8 @@ class Batch::Implementation {
     commands_ = taken.commands;
     is_commanded_ = taken.is_commanded;
     failures_ = taken.failures;
+    placements_ = taken.placements;
+    places_ = taken.places;
     for (std::size_t i = 0; i < size(); ++i) {
       members_[i].made_of.seed = taken.vehicles[i].seed;
       members_[i].warnings = taken.vehicles[i].warnings;
@@ -183,7 +274,7 @@ class Batch::Implementation {
 
   void begin(std::size_t i) {
     Member& member = members_[i];
-    steps_[i] = 0;
+    steps_[i] = placements_[i] = 0;
     is_commanded_[i] = false;
     failures_[i].clear();
     member.warnings.resize(member.warned_at_load);
@@ -225,6 +316,122 @@ class Batch::Implementation {
     } catch (const FlightError& error) {
       failures_[i] = error.what();
     }
+    settle(i);
+  }
+
+  /// Fly a vehicle from its start in its own simulation.
+  void follow_apart(std::size_t i, const BatchGuide& guide, const std::string& odometry,
+                    std::int64_t steps, std::int64_t log_every, BatchGuided& guided) {
+    Simulation& simulation = go_apart(i);
+    if (members_[i].in_lanes) {
+      simulation.reset(members_[i].made_of.seed);
+      const auto rotors = static_cast<Eigen::Index>(common_.rotors());
+      for (int k = 0; k < placements_[i]; ++k) {
+        simulation.set_state(batch::taken(&places_[i * state_width()], rotors));
+      }
+      if (is_commanded_[i]) simulation.command(command_of(i), command_width());
+    }
+    guided = BatchGuided{guided.log};
+    try {
+      batch::follow_apart(simulation, guide, odometry, steps, log_every, guided);
+    } catch (const FlightError& error) {
+      failures_[i] = error.what();
+    }
+    const Topics& topics = simulation.topics();
+    const Topic& commands = topics[topics.at(Simulation::command_topic)];
+    note_command(i, commands.values.data());
+    settle(i);
+  }
+
+  void note_command(std::size_t i, const double* speeds) {
+    is_commanded_[i] = true;
+    std::copy_n(speeds, command_width(), &commands_[i * command_width()]);
+  }
+
+  /// Return the simple sensor of a vehicle in the lanes, or null.
+  const batch::LaneSensor* find_sensor(std::size_t i, const std::string& odometry) const {
+    if (!members_[i].in_lanes) return nullptr;
+    for (const batch::LaneSensor& sensor : *members_[i].sensors) {
+      if (sensor.topic == odometry) return &sensor;
+    }
+    return nullptr;
+  }
+
+  batch::Follower make_follower(std::size_t i, const batch::LaneSensor& sensor,
+                                const BatchGuide& guide, BatchGuided& guided) const {
+    const OdometryErrors& errors = sensor.sensor.errors;
+    return {i,
+            &guide,
+            &guided,
+            &errors,
+            seed_of(i, sensor),
+            placements_[i] * errors.draws(),
+            control::TotalVariation(common_.rotors()),
+            control::TotalVariation(command_width())};
+  }
+
+  std::uint64_t seed_of(std::size_t i, const batch::LaneSensor& sensor) const {
+    const std::uint64_t seed = stream_seed(members_[i].made_of.seed, sensor.plugin);
+    return sensor.sensor.seed.value_or(seed);
+  }
+
+  void check_start() const {
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (steps_[i] == 0 && placements_[i] >= 0) continue;
+      throw InputError("vehicle " + std::to_string(i) +
+                       " is not at its start, where controllers take over. Call reset first.");
+    }
+  }
+
+  /// Write the measured odometry of all vehicles.
+  void measure_all(const std::string& topic, double* rows) const {
+    for_each_block([&](std::size_t block, std::size_t first, std::size_t end, double* work) {
+      lanes_->show(block, work);
+      for (std::size_t i = first; i < end; ++i) {
+        const messages::Odometry now = measure(i, topic, work + i % widest_lanes);
+        double* row = std::copy_n(now.position.data(), 3, rows + i * Batch::odometry_width);
+        row = std::copy_n(now.orientation.coeffs().data(), 4, row);
+        row = std::copy_n(now.linear_velocity.data(), 3, row);
+        std::copy_n(now.angular_velocity.data(), 3, row);
+      }
+    });
+  }
+
+  messages::Odometry measure(std::size_t i, const std::string& topic, const double* shown) const {
+    const batch::LaneSensor* sensor = find_sensor(i, topic);
+    if (!sensor) {
+      const Topics& topics = members_[i].apart->topics();
+      return topics.read<messages::Odometry>(
+          control::GuidedController::find_odometry(topics, topic));
+    }
+    const OdometryErrors& errors = sensor->sensor.errors;
+    const auto before = static_cast<double>(placements_[i] + steps_[i]);
+    return batch::measure(shown, errors, seed_of(i, *sensor), before * errors.draws());
+  }
+
+  void note_rates(const std::vector<double>& states,
+                  std::vector<control::TotalVariation>& rates) const {
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (failures_[i].empty()) rates[i].add(&states[i * state_width() + 13]);
+    }
+  }
+
+  /// Add a row to the log of each vehicle that has not failed.
+  void log_all(std::vector<BatchGuided>& guided, const std::vector<double>& states) const {
+    const std::size_t columns = batch::StateRow::joints + common_.rotors();
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (!guided[i].log || !failures_[i].empty()) continue;
+      double* row = guided[i].log + static_cast<std::size_t>(guided[i].rows) * (1 + columns);
+      *row = time(i);
+      std::copy_n(&states[i * state_width()], columns, row + 1);
+      ++guided[i].rows;
+    }
+  }
+
+  /// Take the state of a vehicle over from its simulation.
+  void settle(std::size_t i) {
+    Member& member = members_[i];
+    Simulation& simulation = *member.apart;
     const Snapshot flown = simulation.snapshot();
     steps_[i] = flown.steps;
     member.hear(flown.warnings);
@@ -242,6 +449,8 @@ class Batch::Implementation {
   std::vector<double> commands_;    ///< a row for each vehicle
   std::vector<char> is_commanded_;  ///< whether each vehicle has a command
   std::vector<char> is_apart_;      ///< whether each vehicle has an `apart`
+  std::vector<int> placements_;     ///< calls of set_state() since the reset; -1: after a step
+  std::vector<double> places_;      ///< rows of the last set_state()
   std::vector<std::string> failures_;
   std::unique_ptr<LaneBlocks> lanes_;
 };
@@ -253,10 +462,21 @@ Batch::Batch(std::vector<BatchVehicle> vehicles, const World& world,
 Batch::~Batch() = default;
 Batch::Batch(Batch&&) noexcept = default;
 
+void Batch::follow_together(const CommandAll& command_all, double rate, double delay,
+                            const std::string& odometry, std::int64_t steps, std::int64_t log_every,
+                            std::vector<BatchGuided>& guided) {
+  implementation_->follow_together(command_all, rate, delay, odometry, steps, log_every, guided);
+}
+
 std::size_t Batch::size() const { return implementation_->size(); }
 std::size_t Batch::command_width() const { return implementation_->command_width(); }
 std::size_t Batch::state_width() const { return implementation_->state_width(); }
 double Batch::dt() const { return implementation_->dt(); }
+void Batch::follow(const std::vector<BatchGuide>& guides, const std::string& odometry,
+                   std::int64_t steps, std::int64_t log_every, std::vector<BatchGuided>& guided,
+                   const std::function<void()>& poll) {
+  implementation_->follow(guides, odometry, steps, log_every, guided, poll);
+}
 void Batch::step(const double* commands, std::int64_t count) {
   implementation_->step(commands, count);
 }

@@ -174,9 +174,13 @@ void LaneBlocks::step(std::size_t block, std::int64_t count, double dt, double* 
   if (!is_empty()) step_(view(block, work, steps), count, dt);
 }
 
+void LaneBlocks::show(std::size_t block, double* work) {
+  if (!is_empty()) show_(view(block, work, nullptr), work);
+}
+
 void LaneBlocks::show(std::size_t block, std::size_t vehicles, double* work, double* rows) {
   if (is_empty()) return;
-  show_(view(block, work, nullptr), work);
+  show(block, work);
   const std::size_t width = shown_rows();
   for (std::size_t i = 0; i < vehicles; ++i) {
     double* to = rows + i * width;

@@ -16,6 +16,7 @@ class LaneBlocks {
   LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& vehicles, std::size_t rotors,
              const World& world);
 
+  std::size_t rotors() const { return rotors_; }
   std::size_t blocks() const { return flies_.size() / widest_lanes; }
   /// Return the number of values of a vehicle in show().
   std::size_t shown_rows() const { return StateRow::count(rotors_); }
@@ -26,6 +27,8 @@ class LaneBlocks {
   void begin(std::size_t vehicle, const std::vector<double>& engine_state);
   /// Set the targets of a vehicle's motors.
   void command(std::size_t vehicle, const double* speeds);
+  /// Return whether a vehicle moves in the steps of its block.
+  bool flies(std::size_t vehicle) const { return flies_[vehicle] != 0; }
   /// Set whether a vehicle moves in the steps of its block.
   void let_fly(std::size_t vehicle, bool flies);
   /// Remove the bounds of a vehicle beyond which its plugins have already warned.
@@ -37,6 +40,8 @@ class LaneBlocks {
   /// Convert to and from the state that the engine saves, without changing the ground's part.
   void get_engine_state(std::size_t vehicle, std::vector<double>& state) const;
   void set_engine_state(std::size_t vehicle, const std::vector<double>& state);
+  /// Write the states of a block in rows of StateRow, but without the angles of hinged vehicles.
+  void show(std::size_t block, double* work);
   /// Write the rows of Batch::get_state() for all vehicles of a block.
   void show(std::size_t block, std::size_t vehicles, double* work, double* rows);
 

@@ -9,6 +9,7 @@
 #include "hinged_block.hpp"
 #include "ode/ode_engine.hpp"
 #include "quadcore/plugin/error.hpp"
+#include "quadcore/rotor_shares.hpp"
 
 namespace quadcore::batch {
 namespace {
@@ -149,6 +150,20 @@ std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
   rows.put(Row::motors_sim_slow, motors.sim_slow);
   vehicle.places.assign(motors.places, motors.places + rotors);
   return vehicle;
+}
+
+std::vector<LaneSensor> list_lane_sensors(const Simulation& simulation) {
+  std::vector<LaneSensor> sensors;
+  const Topics& topics = simulation.topics();
+  if (topics.find(health_topic) >= 0) return sensors;
+  for (const OdometrySensor& sensor : simulation.force_laws().odometry) {
+    const Topic& topic = topics[sensor.topic];
+    const auto writer = static_cast<std::size_t>(topic.writer);
+    if (sensor.is_simple) {
+      sensors.push_back({topic.name, simulation.plugins()[writer].name, sensor});
+    }
+  }
+  return sensors;
 }
 
 bool fit(const LaneVehicle& one, const LaneVehicle& other) {

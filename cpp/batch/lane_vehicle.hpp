@@ -2,12 +2,20 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "block.hpp"
 #include "ode/hinged_model.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::batch {
+
+/// Sensor of odometry that a block measures by itself.
+struct LaneSensor {
+  std::string topic, plugin;  ///< names
+  OdometrySensor sensor;
+};
 
 /// Data of one vehicle for the steps of a block.
 struct LaneVehicle {
@@ -22,6 +30,10 @@ struct LaneVehicle {
 
 /// Return the vehicle of a simulation if only force laws for lanes act on it.
 std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation);
+
+/// Return the simple sensors of odometry of a simulation, or none if controllers depend on other
+/// topics.
+std::vector<LaneSensor> list_lane_sensors(const Simulation& simulation);
 
 /// Return whether two vehicles are suitable for the same batch's lanes.
 bool fit(const LaneVehicle& one, const LaneVehicle& other);

@@ -112,6 +112,7 @@ Crew make_crew(std::vector<BatchVehicle> vehicles, Common& common) {
     if (made && are_built_alike(member.made_of, crew.members[i - 1].made_of)) {
       made->set_state(at_rest(member.made_of.spawn, common.rotors()));
       crew.in_lanes.push_back(crew.in_lanes.back());
+      member.sensors = crew.members[i - 1].sensors;
     } else {
       made = common.simulate(member.made_of);
       common.check(i, *made);
@@ -119,6 +120,9 @@ Crew make_crew(std::vector<BatchVehicle> vehicles, Common& common) {
       const bool fits = kind && (!first || fit(*kind, *first));
       crew.in_lanes.push_back(fits ? std::make_shared<const LaneVehicle>(*std::move(kind))
                                    : nullptr);
+      if (fits) {
+        member.sensors = std::make_shared<const std::vector<LaneSensor>>(list_lane_sensors(*made));
+      }
       if (!first) first = crew.in_lanes.back();
     }
     member.warned_at_load = made->warnings().size();

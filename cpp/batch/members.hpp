@@ -14,6 +14,8 @@ struct Member {
   BatchVehicle made_of;
   bool in_lanes = false;
   std::vector<double> start;  ///< in the lanes: initial state as saved by the engine
+  std::shared_ptr<const std::vector<LaneSensor>>
+      sensors;  ///< in the lanes: see list_lane_sensors()
   std::unique_ptr<Simulation>
       apart;  ///< in the lanes: simulation of the last call, if it was needed
   std::vector<std::string> warnings;

@@ -9,6 +9,7 @@
 
 #include "arguments.hpp"
 #include "bindings.hpp"
+#include "controller.hpp"
 #include "guarded.hpp"
 #include "quadcore/plugin/error.hpp"
 
@@ -106,6 +107,92 @@ void step(GuardedBatch& self, const py::object& commands, std::int64_t steps) {
   } while (steps > 0);
 }
 
+template <class Get>
+auto of_each(const GuardedBatch& self, const Get& get) {
+  py::array_t<decltype(get(std::size_t{0}))> values(static_cast<py::ssize_t>(self.batch.size()));
+  for (std::size_t i = 0; i < self.batch.size(); ++i) values.mutable_data()[i] = get(i);
+  return values;
+}
+
+/// Return an array of each flight.
+py::list arrays(const std::vector<BatchGuided>& guided, std::vector<double> BatchGuided::* member) {
+  py::list list;
+  for (const BatchGuided& flight : guided) {
+    const std::vector<double>& numbers = flight.*member;
+    list.append(py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data()));
+  }
+  return list;
+}
+
+/// Fly all vehicles under built-in controllers; returns logs, numbers of rows, calls and saturated
+/// calls, and for each flight the variation of rates and commands and the durations of some calls.
+py::tuple follow(GuardedBatch& self, const std::vector<BoundController*>& controllers,
+                 const std::vector<control::ReferenceShape*>& references, const Numbers& rates,
+                 const Numbers& delays, const std::string& odometry, std::int64_t steps,
+                 std::int64_t log_every, const std::vector<std::size_t>& logged) {
+  const std::size_t n = self.batch.size();
+  check_shape(rates, row_of_each(self), "rates");
+  check_shape(delays, row_of_each(self), "delays");
+  if (controllers.size() != n || references.size() != n) {
+    throw InputError("there are not as many controllers and references as vehicles.");
+  }
+  const auto rows = static_cast<py::ssize_t>(steps / log_every + 1);
+  const auto columns = static_cast<py::ssize_t>(1 + (13 + self.batch.state_width()) / 2);
+  py::array_t<double> logs({static_cast<py::ssize_t>(logged.size()), rows, columns});
+  std::vector<BatchGuide> guides;
+  std::vector<BatchGuided> guided(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    guides.push_back({&controllers[i]->controller.controller(), references[i], rates.data()[i],
+                      delays.data()[i]});
+  }
+  for (std::size_t k = 0; k < logged.size(); ++k) {
+    guided.at(logged[k]).log = logs.mutable_data() + static_cast<py::ssize_t>(k) * rows * columns;
+  }
+  const BatchLock lock(self);
+  without_gil([&] {
+    self.batch.follow(guides, odometry, steps, log_every, guided, [] {
+      const py::gil_scoped_acquire gil;
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    });
+  });
+  const auto count = [&](std::int64_t BatchGuided::* member) {
+    return of_each(self, [&](std::size_t i) { return guided[i].*member; });
+  };
+  return py::make_tuple(
+      logs, count(&BatchGuided::rows), count(&BatchGuided::calls), count(&BatchGuided::saturated),
+      arrays(guided, &BatchGuided::rate_variation), arrays(guided, &BatchGuided::command_variation),
+      arrays(guided, &BatchGuided::seconds));
+}
+
+/// Fly all vehicles under one function that returns all speeds; returns logs, numbers of rows, and
+/// for each flight the variation of rates and commands.
+py::tuple follow_together(GuardedBatch& self, const py::function& function, double rate,
+                          double delay, const std::string& odometry, std::int64_t steps,
+                          std::int64_t log_every) {
+  const auto n = static_cast<py::ssize_t>(self.batch.size());
+  const auto rows = static_cast<py::ssize_t>(steps / log_every + 1);
+  const auto columns = static_cast<py::ssize_t>(1 + (13 + self.batch.state_width()) / 2);
+  py::array_t<double> logs({n, rows, columns});
+  std::vector<BatchGuided> guided(self.batch.size());
+  for (py::ssize_t i = 0; i < n; ++i) {
+    guided[static_cast<std::size_t>(i)].log = logs.mutable_data() + i * rows * columns;
+  }
+  const auto call = [&](double time, const double* measured, double* speeds) {
+    const py::gil_scoped_acquire gil;
+    const py::array_t<double> states({n, static_cast<py::ssize_t>(Batch::odometry_width)},
+                                     measured);
+    const Numbers answer = numbers(function(time, states), 2, "command");
+    check_shape(answer, rows_of_each(self, self.batch.command_width()), "command");
+    std::copy_n(answer.data(), answer.size(), speeds);
+  };
+  const BatchLock lock(self);
+  without_gil(
+      [&] { self.batch.follow_together(call, rate, delay, odometry, steps, log_every, guided); });
+  return py::make_tuple(logs, of_each(self, [&](std::size_t i) { return guided[i].rows; }),
+                        arrays(guided, &BatchGuided::rate_variation),
+                        arrays(guided, &BatchGuided::command_variation));
+}
+
 void write_state(GuardedBatch& self, const py::object& out) {
   double* const rows = writable(out, rows_of_each(self, self.batch.state_width()), "out");
   const BatchLock lock(self);
@@ -132,13 +219,6 @@ void reset(GuardedBatch& self, const py::object& mask, const std::optional<Seeds
   self.batch.reset(flags.data(), seeds ? seeds->data() : nullptr);
 }
 
-template <class Get>
-auto of_each(const GuardedBatch& self, const Get& get) {
-  py::array_t<decltype(get(std::size_t{0}))> values(static_cast<py::ssize_t>(self.batch.size()));
-  for (std::size_t i = 0; i < self.batch.size(); ++i) values.mutable_data()[i] = get(i);
-  return values;
-}
-
 }  // namespace
 
 void bind_batch(py::module_& m) {
@@ -152,6 +232,11 @@ void bind_batch(py::module_& m) {
       .def("step", &step, py::arg("commands"), py::arg("steps"),
            "Advance all vehicles that have not failed. Commands have the shape (n, rotors) in "
            "rad/s; None keeps the previous ones.")
+      .def("_follow", &follow, py::arg("controllers"), py::arg("references"), py::arg("rates"),
+           py::arg("delays"), py::arg("odometry"), py::arg("steps"), py::arg("log_every"),
+           py::arg("logged"))
+      .def("_follow_together", &follow_together, py::arg("function"), py::arg("rate"),
+           py::arg("delay"), py::arg("odometry"), py::arg("steps"), py::arg("log_every"))
       .def("_write_state", &write_state, py::arg("out"))
       .def("_take_state", &take_state, py::arg("states"))
       .def("reset", &reset, py::arg("mask"), py::arg("seeds"),

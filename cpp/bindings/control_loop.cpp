@@ -15,6 +15,7 @@
 namespace quadcore::bindings {
 namespace {
 
+using control::ReferencePreview;
 using control::ReferenceShape;
 
 /// A control loop with the number, the saturation and the duration of its calls.
@@ -37,8 +38,11 @@ class BoundLoop {
     if (controller.rotors() != width_) check_command(nullptr, controller.rotors(), width_);
     const std::size_t topic =
         control::GuidedController::find_odometry(bound_.guarded->simulation.topics(), odometry);
+    const ReferencePreview::ListTimes list_times = [this](double* times, std::size_t count) {
+      loop_.list_times(times, count);
+    };
     const auto call = [&](double period, double* speeds) {
-      clocked([&] { controller.command(period, topic, reference, speeds); });
+      clocked([&] { controller.command(period, topic, reference, list_times, speeds); });
       saturated_ += controller.saturated();
     };
     raising_warnings(*bound_.guarded, [&] { without_gil([&] { loop_.advance(n, call); }); });
@@ -122,7 +126,7 @@ class BoundLoop {
   std::vector<double> seconds_;
 };
 
-py::array_t<double> copy_array(const Eigen::ArrayXd& values) {
+py::array_t<double> copy_array(const std::vector<double>& values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 

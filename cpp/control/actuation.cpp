@@ -75,8 +75,9 @@ bool Actuation::lead(double period, bool begins, double* state, double* speeds) 
   constexpr double rounding = 1e-6;  // rad/s
   double* const modelled = state + kRotors;
   bool all = true;
-  const double wanted_share = leads_ ? 1 - elementary::exp(-period / lead_time_) : 0;
-  double lag = 0, share = 0;  // of the previous rotor; fraction of the change within a period
+  if (period != state[kPeriod]) find_shares(period, state);
+  const double wanted_share = state[kWantedShare];
+  const double* const shares = lost(state) + rotors_.size();
   for (std::size_t i = 0; i < rotors_.size(); ++i) {
     const ModelledRotor& rotor = rotors_[i];
     if (begins) modelled[i] = speeds[i];
@@ -84,18 +85,24 @@ bool Actuation::lead(double period, bool begins, double* state, double* speeds) 
       modelled[i] = speeds[i];
       continue;
     }
-    if (rotor.lag != lag) {
-      lag = rotor.lag;
-      share = 1 - elementary::exp(-period / lag);
-    }
-    if (leads_ && lead_time_ < lag) {
-      const double ahead = modelled[i] + wanted_share / share * (speeds[i] - modelled[i]);
+    if (leads_ && lead_time_ < rotor.lag) {
+      const double ahead = modelled[i] + wanted_share / shares[i] * (speeds[i] - modelled[i]);
       speeds[i] = std::clamp(ahead, rotor.slowest, rotor.fastest);
       all &= std::abs(speeds[i] - ahead) <= rounding;
     }
-    modelled[i] += share * (speeds[i] - modelled[i]);
+    modelled[i] += shares[i] * (speeds[i] - modelled[i]);
   }
   return all;
+}
+
+void Actuation::find_shares(double period, double* state) const {
+  double* const shares = state + kRotors + 2 * rotors_.size();
+  for (std::size_t i = 0; i < rotors_.size(); ++i) {
+    const double lag = rotors_[i].lag;
+    shares[i] = lag > 0 ? 1 - elementary::exp(-period / lag) : 1;
+  }
+  state[kWantedShare] = leads_ ? 1 - elementary::exp(-period / lead_time_) : 0;
+  state[kPeriod] = period;
 }
 
 }  // namespace quadcore::control

@@ -71,7 +71,9 @@ Demand Cascade::demand(const LawInput& input, double* memory) const {
   const Vector3d rpy = rpy_from_quaternion(now.orientation);
 
   std::optional<FlatState> flat;
-  if (gains_.flat_rates) flat = flat_state(input.wanted, model_, gains_.drag);
+  if (gains_.flat_rates) {
+    flat = input.flat ? *input.flat : flat_state(input.wanted, model_, gains_.drag);
+  }
 
   // U* + g e3 (2.56): required force of the rotors per mass, in W.
   Vector3d lift_W = acceleration(input, memory) + Vector3d(0, 0, model_.gravity);

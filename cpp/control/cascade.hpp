@@ -24,6 +24,10 @@ class Cascade final : public ControlLaw {
 
   Cascade(const ModelledVehicle& model, const Gains& gains);
 
+  Feeds feeds() const override {
+    if (!gains_.flat_rates) return Feeds::nothing;
+    return gains_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
+  }
   Demand demand(const LawInput& input, double* memory) const override;
 
  private:

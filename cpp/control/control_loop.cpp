@@ -7,20 +7,33 @@ ControlLoop::ControlLoop(Simulation& simulation, Flight& flight, double rate, do
       flight_(flight),
       width_(simulation.command_width()),
       schedule_(rate, delay, width_),
-      state_(schedule_.state_size()) {
-  rates_.add(simulation.state().rotor_velocity.array().abs());
+      state_(schedule_.state_size()),
+      rates_(simulation.rotor_count()),
+      commands_(width_) {
+  rates_.add(simulation.state().rotor_velocity.data());
 }
 
 void ControlLoop::advance(std::int64_t n, const Call& call) {
-  for (; n > 0; --n, ++step_) {
-    const double* const speeds = schedule_.update(step_, simulation_.dt(), state_.data(), call);
+  const double dt = simulation_.dt();
+  while (n > 0) {
+    const double* const speeds = schedule_.update(step_, dt, state_.data(), call);
     if (speeds) {
       simulation_.command(speeds, width_);
-      const auto width = static_cast<Eigen::Index>(width_);
-      commands_.add(Eigen::Map<const Eigen::ArrayXd>(speeds, width).abs());
+      commands_.add(speeds);
     }
-    flight_.advance(1);
-    rates_.add(simulation_.state().rotor_velocity.array().abs());
+    const double event = schedule_.next_event(step_, dt, state_.data());
+    for (; n > 0 && step_ < event; --n, ++step_) {
+      flight_.advance(1);
+      rates_.add(simulation_.state().rotor_velocity.data());
+    }
+  }
+}
+
+void ControlLoop::list_times(double* times, std::size_t count) const {
+  double step = step_;
+  for (std::size_t i = 0; i < count; ++i) {
+    times[i] = simulation_.time_after(step - step_);
+    step = schedule_.next_call(step, simulation_.dt());
   }
 }
 

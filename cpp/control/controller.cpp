@@ -27,15 +27,21 @@ Controller::Controller(const ControllerInfo& law, const VehicleDescription& vehi
       law_(law.make(model_, values)),
       memory_size_(law.memory_size) {}
 
-void Controller::command(double period, const Odometry& now, const Reference& reference,
-                         double* state, double* speeds) const {
-  Reference wanted = reference;
-  if (!actuation_.can_control_yaw(model_.mass * model_.gravity, state)) {
-    wanted.yaw = rpy_from_quaternion(now.orientation).z();
-    wanted.yaw_rate = wanted.yaw_acceleration = 0;
+void Controller::command(double period, const Odometry& now, const Reference& wanted, double* state,
+                         double* speeds, const FlatState* flat) const {
+  if (actuation_.can_control_yaw(model_.mass * model_.gravity, state)) {
+    return follow(period, now, wanted, flat, state, speeds);
   }
+  Reference at_any_yaw = wanted;
+  at_any_yaw.yaw = rpy_from_quaternion(now.orientation).z();
+  at_any_yaw.yaw_rate = at_any_yaw.yaw_acceleration = 0;
+  follow(period, now, at_any_yaw, nullptr, state, speeds);
+}
+
+void Controller::follow(double period, const Odometry& now, const Reference& wanted,
+                        const FlatState* flat, double* state, double* speeds) const {
   const Actuation::Now rotors_now = actuation_.now(state, speeds);
-  const LawInput input{period,         rotors_now.begins,   now, wanted, rotors_now.exerted,
+  const LawInput input{period,         rotors_now.begins,   now, wanted, flat, rotors_now.exerted,
                        rotors_now.h_F, rotors_now.saturated};
   const Demand demand = law_->demand(input, state + Actuation::state_size(rotors()));
   actuation_.command(period, demand, state, speeds);

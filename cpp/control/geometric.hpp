@@ -14,6 +14,7 @@ class Geometric final : public ControlLaw {
   Geometric(const ModelledVehicle& model, const Gains& gains) : tracking_(model, gains) {}
 
   static constexpr std::size_t memory_size = 3;
+  Feeds feeds() const override { return tracking_.feeds(); }
   Demand demand(const LawInput& input, double* memory) const override;
 
  private:

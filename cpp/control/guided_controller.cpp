@@ -23,6 +23,7 @@ GuidedController::GuidedController(const Simulation& simulation, Controller cont
                                    const VehicleDescription& flown)
     : simulation_(simulation),
       controller_(std::move(controller)),
+      preview_(controller_),
       health_of_(flown),
       health_(simulation.topics().find(health_topic)),
       state_(controller_.state_size()) {}
@@ -38,9 +39,12 @@ std::size_t GuidedController::find_odometry(const Topics& topics, const std::str
 }
 
 void GuidedController::command(double period, std::size_t odometry, const ReferenceShape& reference,
-                               double* speeds) {
+                               const ReferencePreview::ListTimes& list_times, double* speeds) {
   const auto now = simulation_.topics().read<Odometry>(odometry);
-  command(period, now, reference.at(simulation_.time()), speeds);
+  const ReferencePreview::Point& point = preview_.at(simulation_.time(), reference, list_times);
+  hear_of_health();
+  controller_.command(period, now, point.wanted, state_.data(), speeds,
+                      point.flat ? &*point.flat : nullptr);
 }
 
 void GuidedController::command(double period, const Odometry& now, const Reference& wanted,

@@ -19,6 +19,7 @@ class Indi final : public ControlLaw {
   Indi(const ModelledVehicle& model, const Gains& gains)
       : tracking_(model, gains), filter_(gains.filter) {}
 
+  Feeds feeds() const override { return tracking_.feeds(); }
   Demand demand(const LawInput& input, double* memory) const override;
 
  private:

@@ -1,47 +1,64 @@
 #pragma once
 
-#include <cmath>
-
-#include "quadcore/plugin/spatial.hpp"
+#include "lanes/vec3.hpp"
 
 namespace quadcore::control {
 
+using laws::Vec3;
+
 /// A vector and its first two time derivatives.
+template <class T>
 struct Jet {
-  Vector3d x, dx, ddx;
+  Vec3<T> x, dx, ddx;
 };
 
 /// A number and its first two time derivatives.
+template <class T>
 struct ScalarJet {
-  double x, dx, ddx;
+  T x, dx, ddx;
 };
 
-inline Jet operator+(const Jet& a, const Jet& b) { return {a.x + b.x, a.dx + b.dx, a.ddx + b.ddx}; }
-inline Jet operator*(double factor, const Jet& a) {
+template <class T>
+QUADCORE_LAW Jet<T> operator+(const Jet<T>& a, const Jet<T>& b) {
+  return {a.x + b.x, a.dx + b.dx, a.ddx + b.ddx};
+}
+template <class T>
+QUADCORE_LAW Jet<T> operator*(double factor, const Jet<T>& a) {
   return {factor * a.x, factor * a.dx, factor * a.ddx};
 }
-inline Jet operator*(const ScalarJet& s, const Jet& a) {
-  return {s.x * a.x, s.dx * a.x + s.x * a.dx, s.ddx * a.x + 2 * s.dx * a.dx + s.x * a.ddx};
+template <class T>
+QUADCORE_LAW Jet<T> operator*(const ScalarJet<T>& s, const Jet<T>& a) {
+  return {s.x * a.x, s.dx * a.x + s.x * a.dx, s.ddx * a.x + (2 * s.dx) * a.dx + s.x * a.ddx};
 }
-inline Jet cross(const Jet& a, const Jet& b) {
-  return {a.x.cross(b.x), a.dx.cross(b.x) + a.x.cross(b.dx),
-          a.ddx.cross(b.x) + 2 * a.dx.cross(b.dx) + a.x.cross(b.ddx)};
+template <class T>
+QUADCORE_LAW Jet<T> cross(const Jet<T>& a, const Jet<T>& b) {
+  return {cross(a.x, b.x), cross(a.dx, b.x) + cross(a.x, b.dx),
+          cross(a.ddx, b.x) + 2.0 * cross(a.dx, b.dx) + cross(a.x, b.ddx)};
 }
-inline ScalarJet dot(const Jet& a, const Jet& b) {
-  return {a.x.dot(b.x), a.dx.dot(b.x) + a.x.dot(b.dx),
-          a.ddx.dot(b.x) + 2 * a.dx.dot(b.dx) + a.x.dot(b.ddx)};
+template <class T>
+QUADCORE_LAW ScalarJet<T> dot(const Jet<T>& a, const Jet<T>& b) {
+  return {dot(a.x, b.x), dot(a.dx, b.x) + dot(a.x, b.dx),
+          dot(a.ddx, b.x) + 2 * dot(a.dx, b.dx) + dot(a.x, b.ddx)};
 }
 /// Return the square root of a positive number.
-inline ScalarJet sqrt(const ScalarJet& s) {
-  const double root = std::sqrt(s.x), d_root = s.dx / (2 * root);
+template <class T>
+QUADCORE_LAW ScalarJet<T> sqrt(const ScalarJet<T>& s) {
+  const T root = laws::square_root(s.x), d_root = s.dx / (2 * root);
   return {root, d_root, (s.ddx / 2 - d_root * d_root) / root};
 }
-inline ScalarJet inverse(const ScalarJet& s) {
-  const double i = 1 / s.x, di = -s.dx * i * i;
+template <class T>
+QUADCORE_LAW ScalarJet<T> inverse(const ScalarJet<T>& s) {
+  const T i = 1 / s.x, di = -s.dx * i * i;
   return {i, di, (-s.ddx * i - 2 * s.dx * di) * i};
 }
-inline ScalarJet norm(const Jet& a) { return sqrt(dot(a, a)); }
+template <class T>
+QUADCORE_LAW ScalarJet<T> norm(const Jet<T>& a) {
+  return sqrt(dot(a, a));
+}
 /// Return the unit vector of a nonzero vector.
-inline Jet unit(const Jet& a) { return inverse(norm(a)) * a; }
+template <class T>
+QUADCORE_LAW Jet<T> unit(const Jet<T>& a) {
+  return inverse(norm(a)) * a;
+}
 
 }  // namespace quadcore::control

@@ -81,7 +81,7 @@ Lqr::Lqr(const ModelledVehicle& model, const Gains& g) : model_(model), gains_(g
 Demand Lqr::demand(const LawInput& input, double* memory) const {
   const Odometry& now = input.now;
   const Reference& wanted = input.wanted;
-  FlatState flat = flat_state(wanted, model_, gains_.drag);
+  FlatState flat = input.flat ? *input.flat : flat_state(wanted, model_, gains_.drag);
   if (!gains_.feed_forward) {
     Reference unmoved = wanted;
     unmoved.acceleration.setZero();

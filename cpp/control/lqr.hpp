@@ -22,6 +22,9 @@ class Lqr final : public ControlLaw {
   Lqr(const ModelledVehicle& model, const Gains& gains);
 
   static constexpr std::size_t memory_size = 3;
+  Feeds feeds() const override {
+    return gains_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
+  }
   Demand demand(const LawInput& input, double* memory) const override;
 
  private:

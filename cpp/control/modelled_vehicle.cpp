@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "flat_table.hpp"
 #include "quadcore/control/rotors.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
@@ -111,10 +112,10 @@ ModelledVehicle ModelledVehicle::of(const VehicleDescription& vehicle, std::vect
 
 Vector3d ModelledVehicle::air_force_W(const Matrix3d& R_WF, const Vector3d& v_WF_W,
                                       const Vector3d& w_WF_F) const {
-  const Vector3d v_F = v_WCcm_F(R_WF.transpose() * v_WF_W, w_WF_F), v_W = R_WF * v_F;
-  const Vector3d f_F = air.linear.topLeftCorner<3, 3>() * v_F +
-                       air.of_components.cwiseProduct(v_W.cwiseAbs()).cwiseProduct(v_W);
-  return -(R_WF * f_F) - air.quadratic * v_W.norm() * v_W;
+  const Vector3d v_F = v_WCcm_F(R_WF.transpose() * v_WF_W, w_WF_F);
+  const laws::Vec3<double> f_W = control::air_force_W<double>(
+      numbers_of(air), laws::matrix(R_WF.data()), laws::vec(v_F.data()));
+  return {f_W.x, f_W.y, f_W.z};
 }
 
 Vector3d ModelledVehicle::air_torque_F(const Vector3d& v_WF_F, const Vector3d& w_WF_F) const {

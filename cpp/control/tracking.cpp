@@ -39,15 +39,22 @@ Vector3d Tracking::force_W(const LawInput& input, const std::optional<FlatState>
                                                   now.linear_velocity, now.angular_velocity);
 }
 
+ControlLaw::Feeds Tracking::feeds() const {
+  using Feeds = ControlLaw::Feeds;
+  if (!gains_.flat_rates) return Feeds::nothing;
+  return gains_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
+}
+
 std::optional<FlatState> Tracking::fed_forward(const LawInput& input) const {
   if (!gains_.flat_rates) return {};
+  if (input.flat) return *input.flat;
   return flat_state(input.wanted, model(), gains_.drag);
 }
 
 Vector3d Tracking::angular_acceleration(const LawInput& input, const std::optional<FlatState>& flat,
                                         const Vector3d& z_W) const {
   const Matrix3d R_WF = input.now.orientation.toRotationMatrix();
-  const Matrix3d R_WD = attitude_of(z_W, input.wanted.yaw);
+  const Matrix3d R_WD = attitude_of(z_W, flat ? flat->across_W : across_yaw(input.wanted.yaw));
   const Quaterniond q_FD(Matrix3d(R_WF.transpose() * R_WD));
   const Vector3d& w_WF_F = input.now.angular_velocity;
   if (!flat) return attitude_.angular_acceleration(q_FD, -w_WF_F);

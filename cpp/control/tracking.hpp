@@ -51,6 +51,8 @@ class Tracking {
 
   const ModelledVehicle& model() const { return attitude_.model(); }
 
+  /// See ControlLaw::feeds().
+  ControlLaw::Feeds feeds() const;
   /// Return the reference's flat state if it is fed forward.
   std::optional<FlatState> fed_forward(const LawInput& input) const;
   /// Return the acceleration that corrects position and velocity errors, in W [m/s^2].

@@ -341,6 +341,26 @@ class Batch(metaclass=_Bound):
         threads: int,
     ) -> None: ...
     def step(self, commands: Optional[npt.ArrayLike], steps: int) -> None: ...
+    def _follow(
+        self,
+        controllers: Sequence[Controller],
+        references: Sequence[ReferenceShape],
+        rates: _Array,
+        delays: _Array,
+        odometry: str,
+        steps: int,
+        log_every: int,
+        logged: Sequence[int],
+    ) -> Tuple[_Array, _Array, _Array, _Array, List[_Array], List[_Array], List[_Array]]: ...
+    def _follow_together(
+        self,
+        function: Callable[[float, _Array], npt.ArrayLike],
+        rate: float,
+        delay: float,
+        odometry: str,
+        steps: int,
+        log_every: int,
+    ) -> Tuple[_Array, _Array, List[_Array], List[_Array]]: ...
     def _write_state(self, out: _Array) -> None: ...
     def _take_state(self, states: npt.ArrayLike) -> None: ...
     def reset(self, mask: npt.ArrayLike, seeds: Optional[_Array]) -> None: ...

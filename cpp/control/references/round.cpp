@@ -7,8 +7,10 @@ namespace {
 using T = TagSpec;
 
 /// Add amplitude sin(rate t + phase) along an axis. A phase of a quarter turn makes it a cosine.
-void add_wave(Reference& wanted, int axis, double amplitude, double rate, double t, bool cosine) {
-  const auto [s, c] = elementary::sincos(rate * t);
+/// \param angle  sine and cosine of rate t
+void add_wave(Reference& wanted, int axis, double amplitude, double rate,
+              const elementary::SineCosine& angle, bool cosine) {
+  const auto [s, c] = angle;
   const double wave = amplitude * (cosine ? c : s), slope = amplitude * (cosine ? -s : c);
   wanted.position[axis] += wave;
   wanted.velocity[axis] += rate * slope;
@@ -24,8 +26,9 @@ struct Spiral : ReferenceShape, Place {
   Reference at(double t) const override {
     Reference wanted;
     wanted.position = position();
-    add_wave(wanted, 0, radius, rate, t, true);
-    add_wave(wanted, 1, radius, rate, t, false);
+    const elementary::SineCosine angle = elementary::sincos(rate * t);
+    add_wave(wanted, 0, radius, rate, angle, true);
+    add_wave(wanted, 1, radius, rate, angle, false);
     wanted.position.z() += climb * t;
     wanted.velocity.z() = climb;
     turn(t, wanted);
@@ -40,8 +43,8 @@ struct Eight : ReferenceShape, Place {
   Reference at(double t) const override {
     Reference wanted;
     wanted.position = position();
-    add_wave(wanted, 0, length, rate, t, false);
-    add_wave(wanted, 1, width, 2 * rate, t, false);
+    add_wave(wanted, 0, length, rate, elementary::sincos(rate * t), false);
+    add_wave(wanted, 1, width, 2 * rate, elementary::sincos(2 * rate * t), false);
     turn(t, wanted);
     return wanted;
   }

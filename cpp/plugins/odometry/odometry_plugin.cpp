@@ -1,7 +1,8 @@
 #include <cmath>
 #include <optional>
 
-#include "imperfection.hpp"
+#include "quadcore/force_laws.hpp"
+#include "quadcore/law_interface.hpp"
 #include "quadcore/plugin.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "shared/mounted_sensor.hpp"
@@ -11,31 +12,33 @@ namespace {
 
 /// State: time of measurement, number of random numbers drawn, and the biases of position,
 /// orientation and velocities.
-enum Memory { kTime, kDraws, kBiases, kMemorySize = kBiases + 12 };
+enum Memory { kTime, kDraws, kBiases, kMemorySize = kBiases + OdometryErrors::biases };
 
 /// Odometry of the frame (thesis appendix A.6): pose in the world, linear velocity in world axes
 /// (or in body axes, as nav_msgs/Odometry defines it), and angular velocity in body axes, each with
 /// errors. The errors of the orientation are small rotations about the body axes.
 class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, kMemorySize> {
  public:
+  static constexpr const char* law_interface = quadcore::law_interface;
+
   explicit OdometryPlugin(const PluginSetup& setup)
       : MountedSensor(setup),
-        position_(setup.parameters, "position", true),
-        orientation_(setup.parameters, "orientation", false),
-        linear_velocity_(setup.parameters, "linearVelocity", true),
-        angular_velocity_(setup.parameters, "angularVelocity", true),
+        errors_{read_errors(setup.parameters, "position", true),
+                read_errors(setup.parameters, "orientation", false),
+                read_errors(setup.parameters, "linearVelocity", true),
+                read_errors(setup.parameters, "angularVelocity", true)},
         twist_in_body_(setup.parameters.choice("twistFrame") == "body"),
-        is_perfect_(position_.is_none() && orientation_.is_none() && linear_velocity_.is_none() &&
-                    angular_velocity_.is_none() && channel().is_direct()) {
+        measures_each_step_(setup.parameters.number("rate") * setup.dt >= 1),
+        is_perfect_(errors_.is_none() && channel().is_direct()) {
     const bool own_seed = setup.parameters.has("seed");
     const double seed = own_seed ? setup.parameters.number("seed") : 0;
     if (seed != std::floor(seed))
       throw InputError("<seed> is not a whole number. Write a whole number.");
     if (own_seed) seed_ = stream_seed(static_cast<std::uint64_t>(seed), setup.name);
-    variances_.position_variance = position_.variance();
-    variances_.orientation_variance = orientation_.variance();
-    variances_.linear_velocity_variance = linear_velocity_.variance();
-    variances_.angular_velocity_variance = angular_velocity_.variance();
+    variances_.position_variance = errors_.position.variance();
+    variances_.orientation_variance = errors_.orientation.variance();
+    variances_.linear_velocity_variance = errors_.linear_velocity.variance();
+    variances_.angular_velocity_variance = errors_.angular_velocity.variance();
   }
 
   void sense(const Sample& sample, PluginState state) const override {
@@ -44,7 +47,19 @@ class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, k
     MountedSensor::sense(seeded, state);
   }
 
+  void laws(ConstPluginState, ForceLaws& laws) const override {
+    const bool is_simple = measures_each_step_ && channel().is_direct() &&
+                           errors_.are_independent() && !twist_in_body_;
+    laws.odometry.push_back({channel().topic(), errors_, is_simple, seed_});
+  }
+
  private:
+  static VectorErrors read_errors(const Parameters& p, const std::string& quantity,
+                                  bool has_resolution) {
+    return {p.number(quantity + "Noise"), p.number(quantity + "Walk"),
+            has_resolution ? p.number(quantity + "Resolution") : 0};
+  }
+
   messages::Odometry truth(const Kinematics& k) const {
     messages::Odometry message = variances_;
     message.position = k.p_WF;
@@ -60,22 +75,13 @@ class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, k
     if (is_perfect_) return message;
     const double since = sample.jumped ? 0 : sample.time - memory[kTime];
     memory[kTime] = sample.time;
-    const auto imperfect = [&](const Imperfection& error, const Vector3d& truth, int quantity) {
-      return error.apply(truth, since, sample.seed, memory[kDraws],
-                         memory.segment<3>(kBiases + 3 * quantity));
-    };
-    message.position = imperfect(position_, message.position, 0);
-    const Vector3d turn = imperfect(orientation_, Vector3d::Zero(), 1);
-    const double angle = turn.norm();
-    if (angle > 0)
-      message.orientation = message.orientation * quaternion_about(turn / angle, angle);
-    message.linear_velocity = imperfect(linear_velocity_, message.linear_velocity, 2);
-    message.angular_velocity = imperfect(angular_velocity_, message.angular_velocity, 3);
+    errors_.apply(message, since, sample.seed, memory[kDraws], &memory[kBiases]);
     return message;
   }
 
-  Imperfection position_, orientation_, linear_velocity_, angular_velocity_;
+  OdometryErrors errors_;
   bool twist_in_body_;
+  bool measures_each_step_;
   bool is_perfect_;                    ///< messages are exact and arrive at once
   messages::Odometry variances_;       ///< a message that contains only the variances
   std::optional<std::uint64_t> seed_;  ///< its own seed, if any

@@ -61,6 +61,8 @@ class Channel {
 
   std::size_t state_size() const { return kRing + places_ * row_; }
 
+  /// Return the index of the topic.
+  std::size_t topic() const { return topic_; }
   /// Return whether every message arrives at once.
   bool is_direct() const { return delay_ == 0 && dropout_ == 0; }
 

@@ -16,6 +16,7 @@ from ..control.inner_loop import SET_POINTS, InnerLoop
 from ..control.keywords import ReferenceName
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
 from ..control.reference_ahead import add_future
+from ..control.vectorized import CommandAll, command_one, is_vectorized
 from ..support.arguments import shorten
 from ..support.user_code import describe_error
 from .flight import Pilot
@@ -28,6 +29,8 @@ class ControllerPilot(Pilot):
     ----------
     columns : sequence of str
         Names of the columns that the log has for the reference.
+    is_vectorized : bool
+        Whether the controller commands several vehicles at once.
 
     Raises
     ------
@@ -54,6 +57,7 @@ class ControllerPilot(Pilot):
                 "function that is called as reference(t)."
             )
         check_callable(controller)
+        self.is_vectorized = is_vectorized(controller)
         self.rate = check_rate_or_delay("controller", "rate", getattr(controller, "rate", RATE))
         self.delay = check_rate_or_delay("controller", "delay", getattr(controller, "delay", DELAY))
         inner_loop = getattr(controller, "inner_loop", None)
@@ -105,6 +109,18 @@ class ControllerPilot(Pilot):
         """Duration of each call, s; empty unless the calls are timed."""
         return np.empty(0) if self._loop is None else self._loop.seconds
 
+    @property
+    def is_built_in(self) -> bool:
+        """Whether controller and reference are both built in."""
+        is_shape = isinstance(self._reference, references.Shape)
+        return is_shape and isinstance(self._controller, BuiltInController)
+
+    @property
+    def built_in(self) -> Tuple[_core.Controller, _core.ReferenceShape]:
+        """Built-in controller after its reset, and built-in reference, in the core."""
+        assert isinstance(self._reference, references.Shape)
+        return self._controller.core, self._reference.shape
+
     def reset(self, simulation: _core.Simulation) -> None:
         """Reset the controller."""
         self._inner_loop.leave()
@@ -124,12 +140,11 @@ class ControllerPilot(Pilot):
         A built-in controller on a built-in reference runs in the core, without the interpreter.
         """
         loop = self._loop = _core.ControlLoop(flight, self.rate, self.delay, self._timed)
-        controller, reference = self._controller, self._reference
-        if isinstance(controller, BuiltInController) and isinstance(reference, references.Shape):
-            shape = reference.shape
-            return lambda steps: loop.follow(steps, controller.core, SENSED, shape)
+        if self.is_built_in:
+            core, shape = self.built_in
+            return lambda steps: loop.follow(steps, core, SENSED, shape)
         call, limits = self._function(simulation), self._limits
-        if isinstance(controller, BuiltInController):
+        if isinstance(self._controller, BuiltInController):
             call, limits = self._count_reported(call), np.full(len(limits), np.inf)
         return lambda steps: loop.advance(steps, call, limits)
 
@@ -148,6 +163,12 @@ class ControllerPilot(Pilot):
         controller, inner_loop = self._controller, self._inner_loop
         period = max(1 / self.rate, simulation.dt)  # called once a step at most
         reference = None if self._reference is None else add_future(self._reference)
+        width = len(self._limits)
+
+        def call_vectorized() -> Any:
+            t, state = simulation.time, _core.Odometry(simulation)
+            wanted = None if reference is None else reference(t)
+            return command_one(controller, t, state, wanted, width)
 
         def call() -> Any:
             t, state = simulation.time, _core.Odometry(simulation)
@@ -157,14 +178,25 @@ class ControllerPilot(Pilot):
             inner_loop.leave()
             return speeds
 
-        return call
+        return call_vectorized if self.is_vectorized else call
+
+    def command_all(self, n: int) -> CommandAll:
+        """Return the function by which a vectorized controller commands n vehicles."""
+        given = self._reference
+        reference = given.shape.at if isinstance(given, references.Shape) else given
+        return CommandAll(self._controller, reference, n, self._limits)
 
     def add_columns(self, table: np.ndarray) -> np.ndarray:
         """Add the columns of the reference to rows of the state."""
         if self._reference is None:
             return table
-        wanted = references.sample_positions(self._reference, table[:, 0])
+        wanted = self.sample(table[:, 0])
         return np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
+
+    def sample(self, times: np.ndarray) -> np.ndarray:
+        """Return position and yaw of the reference at times; shape (n, 4)."""
+        assert self._reference is not None
+        return references.sample_positions(self._reference, times)
 
 
 _COLUMNS = (

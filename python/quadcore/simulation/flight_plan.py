@@ -28,6 +28,7 @@ from .log import Log
 from .scenarios import Scenario, add_wind
 from .scenarios import read_scenario as read_scenario
 from .simulation import Simulation, make_simulation
+from .state import State
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -240,10 +241,17 @@ class FlightPlan:
             state = simulation.state.copy()
             state.rotor_velocity = np.array(self.rotor_velocity, dtype=float)
             simulation.set_state(state)
-        if self.on_reference and self.reference is not None:
-            spins = self.controller.spins if isinstance(self.controller, BuiltInController) else ()
-            simulation.set_state(references.start(simulation, self.reference, spins))
+        start = self.find_start(simulation)
+        if start is not None:
+            simulation.set_state(start)
         return simulation
+
+    def find_start(self, simulation: Simulation) -> Optional[State]:
+        """Return the state on the reference in which a simulation of this plan begins, if any."""
+        if not self.on_reference or self.reference is None:
+            return None
+        spins = self.controller.spins if isinstance(self.controller, BuiltInController) else ()
+        return references.start(simulation, self.reference, spins)
 
     def pilot(self, simulation: Simulation, timed: bool = False) -> Optional[ControllerPilot]:
         """Make the pilot that calls the controller, if any; raises as `Simulation.run` does.

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .._core import InputError
-from ..control import controllers, gains, references
+from ..control import controllers, gains, references, vectorized
 from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike, check_callable, set_parameter
 from ..control.keywords import ReferenceName
@@ -16,6 +16,7 @@ from ..simulation.flight_plan import FlightPlan
 from ..support.arguments import shorten
 from ..support.user_code import names_file
 from ..support.values import SPAWN, check_pose
+from .executor import run_contained
 
 Controllers = Union[ControllerLike, Mapping[str, ControllerLike], Sequence[ControllerLike]]
 """One or several controllers, or a mapping of labels to controllers."""
@@ -101,6 +102,24 @@ class ControlSetup:
     def is_user_code(self, controller: int) -> bool:
         """Whether a controller is user-defined."""
         return _is_user_code(self.things[controller])
+
+    @lru_cache(maxsize=None)  # noqa: B019  (setups live as long as their study)
+    def is_vectorized(self, controller: int) -> bool:
+        """Whether a controller commands several vehicles at once; imports no user code here."""
+        thing = self.things[controller]
+        if not isinstance(thing, str):
+            return vectorized.is_vectorized(thing)
+        if not names_user_code(thing):
+            return False
+        found: List[Any] = []
+        run_contained(
+            lambda text: vectorized.is_vectorized(controllers.parse(text, "")),
+            [thing],
+            lambda _, answer: found.append(answer),
+            1,
+            apart=True,
+        )
+        return found == [True]  # the flights show an error
 
     def make(self, controller: int, vehicle: str, values: Mapping[str, float]) -> Any:
         """Make a controller with some values for one flight of a vehicle."""

@@ -19,6 +19,7 @@ from ..simulation.simulation import Simulation
 from ..simulation.trajectory import find_speed_limit
 from ..support.warning import suppress_warnings
 from .controller_timing import summarise_durations
+from .grouped_flights import FlightRecord, fly_group
 from .step_response import step_response
 from .table import NOT_FLOWN
 from .time_limit import time_limit
@@ -122,21 +123,19 @@ def fly_and_measure(
         except FlightError as error:
             failure = str(error)
     log = rows.log()
-    failure = describe_failure(log) or failure
-    measures = NAN
-    if not failure:
-        share = pilot.saturated / max(1, pilot.updates)
-        measures = measure(log, share, rotors, pilot.variation)
-    outcome = Outcome(
-        failure,
-        measures,
-        time.perf_counter() - started,
-        pilot.updates,
-        *summarise_durations(pilot.seconds),
-        pilot.rate,
-        pilot.delay,
-        list(simulation.warnings),
-    )
+    outcome = _make_outcome(
+        FlightRecord(
+            log,
+            failure,
+            pilot.updates,
+            pilot.saturated,
+            pilot.variation,
+            pilot.seconds,
+            simulation.warnings,
+            pilot,
+            rotors,
+        )
+    )._replace(seconds=time.perf_counter() - started)
     if watch:
         few = decimate(log)
         motion = np.hstack([few.linear_velocity, few.angular_velocity])
@@ -148,6 +147,53 @@ def fly_and_measure(
     with suppress_warnings():
         vehicle = read_vehicle(flight.model)
     return outcome._replace(log=decimate(log), response=response, limit=limit, vehicle=vehicle)
+
+
+def fly_together(
+    described: Sequence[Callable[[], FlightPlan]], most: float
+) -> Optional[List[Outcome]]:
+    """Simulate flights on one batch and compute their metrics, bit-identical to single flights.
+
+    Parameters
+    ----------
+    described
+        Functions that return the plans.
+    most
+        Wall-clock limit of each flight, s.
+
+    Returns
+    -------
+    list of Outcome, or None
+        Outcomes; None if only single flights are possible. The durations of the controller are
+        those of every sixteenth update.
+    """
+    started = time.perf_counter()
+    flights = fly_group(described, most)
+    if flights is None:
+        return None
+    outcomes = [_make_outcome(flight) for flight in flights]
+    each = (time.perf_counter() - started) / len(outcomes)
+    return [outcome._replace(seconds=each) for outcome in outcomes]
+
+
+def _make_outcome(flight: FlightRecord) -> Outcome:
+    """Compute the metrics of a flight."""
+    failure = describe_failure(flight.log) or flight.failure
+    measures = NAN
+    if not failure:
+        share = flight.saturated / max(1, flight.calls)
+        measures = measure(flight.log, share, flight.rotors, flight.variation)
+    call, slow_call = summarise_durations(flight.seconds)
+    return Outcome(
+        failure,
+        measures,
+        updates=flight.calls,
+        call=call,
+        slow_call=slow_call,
+        rate=flight.pilot.rate,
+        delay=flight.pilot.delay,
+        warnings=list(flight.warnings),
+    )
 
 
 def _animated_topics(simulation: Simulation) -> List[str]:

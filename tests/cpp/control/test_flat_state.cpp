@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "flat_table.hpp"
 #include "modelled_vehicles.hpp"
 #include "quadcore/control/flat_state.hpp"
 
@@ -115,4 +116,46 @@ TEST_CASE("a reference that falls freely has no attitude") {
   CHECK_THROWS_WITH(flat_state(falling, test::odd_belief(4), false),
                     "the reference has no defined attitude: it is in free fall, or its thrust "
                     "points along its own x axis.");
+}
+
+TEST_CASE("flat states of several references are bit-identical to those of each alone") {
+  ModelledVehicle model = test::odd_belief(4);
+  model.air.linear.diagonal() << 0.07, 0.05, 0.01, 0, 0, 0;
+  model.air.quadratic = 0.02;
+  model.air.of_components = {0, 0, 0.012};
+  for (const bool is_offset : {true, false}) {
+    if (!is_offset) model.p_FCcm_F.setZero();
+    for (const bool with_drag : {false, true}) {
+      FlatTable table(model, with_drag);
+      const auto eight = make_reference("eight", {{"along", 1}, {"yaw_rate", 0.3}});
+      const auto hover = make_reference("hover", {{"yaw", 1}});  // where drag has a kink
+      const auto wanted = [&](std::size_t i) {
+        return i == 3 ? hover->at(0) : eight->at(0.37 * static_cast<double>(i));
+      };
+      for (std::size_t i = 0; i < widest_lanes; ++i) table.set(i, wanted(i));
+      table.solve(widest_lanes);
+      for (std::size_t i = 0; i < widest_lanes; ++i) {
+        CAPTURE(i);
+        const std::optional<FlatState> one = table.state(i);
+        REQUIRE(one);
+        const FlatState alone = flat_state(wanted(i), model, with_drag);
+        CHECK(one->R_WF == alone.R_WF);
+        CHECK(one->w_WF_F == alone.w_WF_F);
+        CHECK(one->dw_WF_F == alone.dw_WF_F);
+        CHECK(one->a_FCcm_W == alone.a_FCcm_W);
+        CHECK(one->thrust == alone.thrust);
+      }
+    }
+  }
+}
+
+TEST_CASE("a reference without a defined attitude has no flat state next to others") {
+  FlatTable table(test::odd_belief(4), false);
+  Reference falling;
+  falling.acceleration.z() = -test::odd_belief(4).gravity;
+  table.set(0, falling);
+  table.set(1, Reference());
+  table.solve(2);
+  CHECK_FALSE(table.state(0));
+  CHECK(table.state(1));
 }

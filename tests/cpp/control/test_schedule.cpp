@@ -88,3 +88,32 @@ TEST_CASE("a schedule whose memory is damaged says so and writes nowhere else") 
   }
   CHECK(refused > 0);
 }
+
+TEST_CASE("a schedule that is updated at its events only asks and arrives as at every step") {
+  struct Timing {
+    double rate, delay;
+  };
+  for (const Timing& timing : {Timing{500, 0}, {333, 0.0035}, {70, 0.05}, {5000, 0}, {3, 0.001}}) {
+    CAPTURE(timing.rate);
+    constexpr double dt = 1e-3;
+    constexpr int steps = 1000;
+    const Schedule schedule(timing.rate, timing.delay, 1);
+    const Flown each = fly(schedule, counted(steps), dt);
+    std::vector<double> state(schedule.state_size(), 0.0);
+    Flown events;
+    for (double step = 0; step < steps; step = schedule.next_event(step, dt, state.data())) {
+      const auto ask = [&](double, double* speeds) {
+        events.asked.push_back(static_cast<int>(step));
+        speeds[0] = step;
+      };
+      if (schedule.update(step, dt, state.data(), ask)) {
+        events.arrived.push_back(static_cast<int>(step));
+      }
+    }
+    CHECK(events.asked == each.asked);
+    CHECK(events.arrived == each.arrived);
+    for (std::size_t i = 0; i + 1 < each.asked.size(); ++i) {
+      CHECK(schedule.next_call(each.asked[i], dt) == each.asked[i + 1]);
+    }
+  }
+}

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,6 +18,36 @@ struct BatchVehicle {
   std::map<std::string, std::string> parameters = {};  ///< like SimulationOptions::parameters
   Pose spawn = {};                                     ///< initial pose of the frame in the world
   std::uint64_t seed = 0;                              ///< seed of all random numbers
+};
+
+namespace control {
+class Controller;
+class ReferenceShape;
+}  // namespace control
+
+/// Controller of a vehicle of a batch, and what it follows. Both may serve several vehicles and
+/// must exist while the vehicles follow.
+struct BatchGuide {
+  const control::Controller* controller;
+  const control::ReferenceShape* reference;
+  double rate;   ///< calls per simulated second
+  double delay;  ///< from a call to the step at which its command acts [s]
+};
+
+/// A flight of a vehicle of a batch under a controller.
+struct BatchGuided {
+  /// Where to write the rows of its log, in the columns of log_columns(): room for the first and
+  /// one after each `log_every` steps. Null: no log.
+  double* log = nullptr;
+  std::int64_t rows = 0;       ///< number of written rows
+  std::int64_t calls = 0;      ///< number of calls of the controller
+  std::int64_t saturated = 0;  ///< those with a demand that the rotors could not exert
+  /// Total variation of the magnitudes of the joint rates over all steps [rad/s].
+  std::vector<double> rate_variation = {};
+  /// Total variation of the magnitudes of the commands [rad/s].
+  std::vector<double> command_variation = {};
+  /// Durations of every sixteenth call [s].
+  std::vector<double> seconds = {};
 };
 
 /// Complete state of a batch.
@@ -50,6 +81,34 @@ class Batch {
   /// Throws InputError without changes for a number that is not finite, or for commands if a plugin
   /// gives them.
   void step(const double* commands, std::int64_t count = 1);
+
+  /// Advance all vehicles that have not failed under controllers.
+  /// \param guides     one for each vehicle
+  /// \param odometry   topic of the measured state
+  /// \param log_every  number of steps between rows of the logs
+  /// \param guided     one for each vehicle
+  /// \param poll       called at times by the calling thread; may throw to end the call
+  /// Throws InputError without changes for a vehicle that is not at time 0 or has moved since its
+  /// reset. Throws what a controller throws; the vehicles are then at different times.
+  void follow(const std::vector<BatchGuide>& guides, const std::string& odometry,
+              std::int64_t steps, std::int64_t log_every, std::vector<BatchGuided>& guided,
+              const std::function<void()>& poll);
+
+  /// Number of values in a row of measured odometry: position, orientation (x, y, z, w), linear and
+  /// angular velocity.
+  static constexpr std::size_t odometry_width = 13;
+  /// Commands all vehicles at once.
+  /// \param time      simulation time [s]
+  /// \param odometry  a row for each vehicle
+  /// \param speeds    where to write a row of command_width() for each vehicle [rad/s]
+  using CommandAll = std::function<void(double time, const double* odometry, double* speeds)>;
+  /// Advance all vehicles that have not failed under one controller, otherwise like follow().
+  /// \param rate, delay  see BatchGuide
+  /// Throws InputError for an odometry topic that some vehicle cannot measure in the lanes, and for
+  /// speeds that are not finite.
+  void follow_together(const CommandAll& command_all, double rate, double delay,
+                       const std::string& odometry, std::int64_t steps, std::int64_t log_every,
+                       std::vector<BatchGuided>& guided);
 
   /// Return the number of values in a row of get_state().
   std::size_t state_width() const;

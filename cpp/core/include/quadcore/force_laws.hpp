@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "quadcore/lane_laws.hpp"
+#include "quadcore/odometry_errors.hpp"
 #include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
@@ -21,14 +22,16 @@ struct Quiet {
   const double* has_said_tilt = nullptr;
 };
 
-/// Force laws that quadcore's own plugins provide in addition to forces(), for engines that
-/// evaluate them directly. Their pointers refer to the plugins or their state.
+/// Force laws and sensors that quadcore's own plugins provide in addition to forces() and sense(),
+/// for engines and batches that evaluate them directly. Their pointers refer to the plugins or
+/// their state.
 struct ForceLaws {
   std::vector<RotorForces> rotor_forces;    ///< thrust, drag, reaction torques
   std::vector<FrameDrag> frame_drags;       ///< parasitic drag of the airframe
   std::vector<AirframeLaws> airframes;      ///< other loads of the air on the airframe
   std::vector<MotorTorques> motor_torques;  ///< torques on the joints
   std::vector<Quiet> quiet;                 ///< bounds for plugins with an update()
+  std::vector<OdometrySensor> odometry;     ///< sensors of odometry
   /// Whether all plugins with an update() are in `quiet` and the laws are complete.
   bool all_quiet = false;
   bool complete = false;  ///< whether nothing else acts on the vehicle and the air is at rest

@@ -91,7 +91,11 @@ class Simulation : private ForceField {
   std::size_t command_width() const;
 
   /// Return the simulation time [s].
-  double time() const { return start_time_ + static_cast<double>(steps_) * dt_; }
+  double time() const { return time_after(0); }
+  /// Return the simulation time after so many more steps [s].
+  double time_after(double steps) const {
+    return start_time_ + (static_cast<double>(steps_) + steps) * dt_;
+  }
   /// Return the time step [s].
   double dt() const { return dt_; }
   /// Return the name of the engine.

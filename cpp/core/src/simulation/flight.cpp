@@ -37,13 +37,17 @@ void Flight::advance(std::int64_t n) {
   const auto rows = static_cast<std::size_t>(std::max<std::int64_t>(n, 0) / log_every_ + 1);
   make_room(rows_.table, rows * row_size_);
   make_room(rows_.wrenches, rows * wrenches_size_);
-  for (; n > 0; --n) {
+  while (n > 0) {
+    std::int64_t steps = std::min(n, log_every_ - steps_ % log_every_);
     if (commands_) {
       const double* speeds = commands_->at(simulation_.time());
       if (speeds) simulation_.command(speeds, simulation_.command_width());
+      steps = 1;
     }
-    simulation_.step();
-    if (++steps_ % log_every_ == 0) log();
+    simulation_.step(steps);
+    steps_ += steps;
+    n -= steps;
+    if (steps_ % log_every_ == 0) log();
   }
 }
 

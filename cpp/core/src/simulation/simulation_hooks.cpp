@@ -27,10 +27,10 @@ void Simulation::note_hooks() {
 }
 
 void Simulation::gather_laws() {
-  for (const LoadedPlugin* const p : with_.forces) {
-    if (!p->descriptor->create.hooks.laws) continue;
-    active_ = p;
-    p->plugin->laws(std::as_const(*this).state_of(*p), laws_);
+  for (const LoadedPlugin& p : plugins_) {
+    if (!p.descriptor->create.hooks.laws) continue;
+    active_ = &p;
+    p.plugin->laws(std::as_const(*this).state_of(p), laws_);
   }
   active_ = nullptr;
   laws_.complete = !windy_ && with_.forces_without_laws.empty();

@@ -29,8 +29,9 @@ from ...support import arguments
 from ...support.warning import warn
 from ..axes import Values
 from ..control_setup import Controllers, References
-from ..executor import run_contained
-from ..measured_flight import Outcome, fly_and_measure
+from ..executor import contain_errors, count_cores, run_contained
+from ..grouped_flights import MOST_VECTORIZED, share_out, split
+from ..measured_flight import Outcome, fly_and_measure, fly_together
 from ..options import EvaluateOptions, Keywords, Names, Progress, accept_options, choose_engines
 from ..table import count_outcomes
 from .margins import MarginSearch
@@ -178,9 +179,9 @@ class _Flights:
     def fly(self) -> None:
         """Simulate all cases, then the trials of the margin search."""
         plan = self._plan
-        self._fly_all(
-            [partial(plan.make_plan, case) for case in plan], self._outcomes, _pick_drawn(plan)
-        )
+        drawn = _pick_drawn(plan)
+        flights = [partial(plan.make_plan, case) for case in plan]
+        self._fly_all(flights, self._outcomes, self._group(range(len(plan)), drawn), drawn)
         if self._searches is not None:
             self._searches.run(self._fly_trials)
 
@@ -202,34 +203,71 @@ class _Flights:
     def _fly_trials(self, trials: Sequence[Trial]) -> List[Outcome]:
         outcomes = [Outcome()] * len(trials)
         flights = [partial(trial.make_plan, self._plan) for trial in trials]
-        self._fly_all(flights, outcomes, watch=True)
+        self._fly_all(flights, outcomes, [], watch=True)
         return outcomes
+
+    def _group(self, rows: Sequence[int], drawn: Collection[int] = ()) -> List[Sequence[int]]:
+        """Group the flights that can share a batch; drawn flights need logs of their own."""
+        plan = self._plan
+        if not plan.control.runs_user_code:
+            processes = plan.options.processes or count_cores()
+            return share_out([i for i in rows if i not in drawn], processes)
+        groups: List[Sequence[int]] = []
+        for combination in split(rows, len(plan.seeds)):  # they differ only in the seed
+            if plan.control.is_vectorized(plan[combination[0]].controller):
+                groups += split([i for i in combination if i not in drawn], MOST_VECTORIZED)
+        return groups
 
     def _fly_all(
         self,
         flights: Sequence[Callable[[], FlightPlan]],
         outcomes: List[Outcome],
+        groups: Sequence[Sequence[int]],
         drawn: Collection[int] = (),
         watch: bool = False,
     ) -> None:
-        """Simulate flights; those in `drawn` keep their logs, and all their motion if watched."""
+        """Simulate flights, those of a group together.
+
+        Flights in `drawn` keep their logs, and all their motion if watched.
+        """
         options = self._plan.options
         expected = len(self._plan) + (self._searches.expected if self._searches else 0)
         total = max(self._done + len(flights), expected)
 
-        def fly(i: int) -> Outcome:
+        grouped = {i for rows in groups for i in rows}
+        tasks = [*([i] for i in range(len(flights)) if i not in grouped), *groups]
+
+        def fly(rows: Sequence[int]) -> List[Outcome]:
+            if len(rows) == 1:
+                return [fly_one(rows[0])]
+            found = fly_together([flights[i] for i in rows], options.time_limit)
+            return found or [fly_contained(i) for i in rows]
+
+        def fly_one(i: int) -> Outcome:
             return fly_and_measure(flights[i], options.time_limit, i in drawn, watch=watch)
 
-        def take(i: int, outcome: Union[Outcome, QuadcoreError]) -> None:
-            if isinstance(outcome, QuadcoreError):
-                outcome = Outcome(str(outcome), refused=isinstance(outcome, InputError))
-            outcomes[i] = outcome
-            self._done += 1
+        def fly_contained(i: int) -> Outcome:
+            try:
+                return contain_errors(fly_one)(i)
+            except QuadcoreError as error:
+                return _describe_error(error)
+
+        def take(task: int, found: Union[List[Outcome], QuadcoreError]) -> None:
+            if isinstance(found, QuadcoreError):
+                found = [_describe_error(found)] * len(tasks[task])
+            for i, outcome in zip(tasks[task], found):
+                outcomes[i] = outcome
+            self._done += len(tasks[task])
             if self._progress is not None:
                 self._progress(self._done, total)
 
         apart = self._plan.control.runs_user_code
-        run_contained(fly, range(len(flights)), take, options.processes, apart=apart)
+        run_contained(fly, tasks, take, options.processes, apart=apart)
+
+
+def _describe_error(error: QuadcoreError) -> Outcome:
+    """Return the outcome of a flight with an error."""
+    return Outcome(str(error), refused=isinstance(error, InputError))
 
 
 def _compute_poles(plan: Plan) -> List[Dict[str, Any]]:

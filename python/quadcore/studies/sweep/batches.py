@@ -1,7 +1,8 @@
-"""Open-loop rows that run together on one batch."""
+"""Rows that run together on one batch."""
 
 from __future__ import annotations
 
+from functools import partial
 from typing import List, Optional, Sequence
 
 import numpy as np
@@ -12,6 +13,7 @@ from ...simulation.flight import count_steps
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support.warning import suppress_warnings
+from .. import measured_flight
 from ..time_limit import time_limit
 from . import motion_metrics
 from .row_spec import Flight, Row, RowSpec
@@ -36,13 +38,34 @@ def fly_together(specs: Sequence[RowSpec]) -> Optional[List[Row]]:
         Outcomes; None if the rows cannot share a batch.
     """
     flights = [spec for spec in specs if isinstance(spec, Flight)]
-    if len(flights) < max(2, len(specs)) or not _are_alike([spec.plan for spec in flights]):
+    if len(flights) < max(2, len(specs)):
+        return None
+    if all(spec.own is None and spec.plan.controller is not None for spec in flights):
+        return _fly_guided(flights)
+    if not _are_alike([spec.plan for spec in flights]):
         return None
     try:
         with time_limit(len(flights) * flights[0].limit), suppress_warnings():
             return _fly(flights)
     except QuadcoreError:  # single flights show which row is invalid
         return None
+
+
+def _fly_guided(flights: Sequence[Flight]) -> Optional[List[Row]]:
+    """Simulate rows with controllers on one batch, if they can share it."""
+    plans = [partial(getattr, spec, "plan") for spec in flights]
+    outcomes = measured_flight.fly_together(plans, flights[0].limit)
+    if outcomes is None:
+        return None
+    return [
+        Row(
+            spec.row,
+            " ".join(outcome.failure.split()),
+            None if outcome.failure else outcome.measures,
+            spec.fingerprint(),
+        )
+        for spec, outcome in zip(flights, outcomes)
+    ]
 
 
 def _are_alike(plans: Sequence[FlightPlan]) -> bool:

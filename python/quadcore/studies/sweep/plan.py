@@ -15,6 +15,7 @@ from .. import tracking_metrics as of_guided
 from ..cases import Cases, check_models, make_scenario_axis
 from ..control_setup import ControlSetup, add_labels, names_user_code
 from ..design import LARGEST, Design
+from ..grouped_flights import ENGINES, MOST
 from ..options import SweepOptions
 from ..variation import pick_controller_values
 from . import motion_metrics
@@ -72,7 +73,10 @@ class Plan(Cases):
     @property
     def at_once(self) -> int:
         """Maximum number of rows per task: several if they can share a batch."""
-        return 1 if self.control.is_closed_loop or self.engines != [ENGINE] else _TOGETHER
+        if not self.control.is_closed_loop:
+            return _TOGETHER if self.engines == [ENGINE] else 1
+        is_grouped = set(self.engines) <= set(ENGINES) and not self.control.runs_user_code
+        return MOST if is_grouped else 1
 
     @property
     def apart(self) -> bool:

@@ -15,7 +15,7 @@ class Actuation {
   /// Return the parameters of the lag compensation.
   static const std::vector<TagSpec>& table();
   /// Return the number of state values for so many rotors.
-  static std::size_t state_size(std::size_t rotors) { return kRotors + 2 * rotors; }
+  static std::size_t state_size(std::size_t rotors) { return kRotors + 3 * rotors; }
 
   /// Modelled state of the rotors.
   struct Now {
@@ -43,11 +43,13 @@ class Actuation {
   void command(double period, const Demand& demand, double* state, double* speeds) const;
 
  private:
-  /// State: whether it has begun, whether the last demand was not met, the modelled rotor speeds
-  /// (without sign), then the lost fractions.
-  enum : std::size_t { kBegun, kSaturated, kRotors };
+  /// State: whether it has begun, whether the last demand was not met, the period of the following
+  /// fractions, the wanted fraction of a change within it; then the modelled rotor speeds (without
+  /// sign), the lost fractions, and the fraction of a change of each rotor.
+  enum : std::size_t { kBegun, kSaturated, kPeriod, kWantedShare, kRotors };
 
   const double* lost(const double* state) const { return state + kRotors + rotors_.size(); }
+  void find_shares(double period, double* state) const;
   bool lead(double period, bool begins, double* state, double* speeds) const;
 
   std::vector<ModelledRotor> rotors_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "quadcore/control/allocation.hpp"
+#include "quadcore/control/flat_state.hpp"
 #include "quadcore/control/modelled_vehicle.hpp"
 #include "quadcore/control/reference.hpp"
 
@@ -22,6 +23,7 @@ struct LawInput {
   bool begins;              ///< whether this is the first call
   const Odometry& now;      ///< linear velocity in W
   const Reference& wanted;  ///< reference
+  const FlatState* flat;    ///< its flat state as ControlLaw::feeds() requires; null: not computed
   Demand exerted;           ///< modelled wrench of the rotors now
   Vector3d h_F;             ///< modelled angular momentum of the rotors now [kg m^2/s]
   bool saturated;           ///< whether the last demand was not met
@@ -32,6 +34,10 @@ struct LawInput {
 class ControlLaw {
  public:
   virtual ~ControlLaw() = default;
+  /// How a control law uses the flat state of the reference.
+  enum class Feeds { nothing, flat_state, flat_state_with_drag };
+  /// Return the flat state that demand() uses.
+  virtual Feeds feeds() const { return Feeds::nothing; }
   /// Return the demand on the rotors until the next call.
   /// \param memory  ControllerInfo::memory_size numbers
   virtual Demand demand(const LawInput& input, double* memory) const = 0;

@@ -1,30 +1,16 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "quadcore/control/schedule.hpp"
+#include "quadcore/control/total_variation.hpp"
 #include "quadcore/flight.hpp"
 #include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
-
-/// Sums the magnitudes of the changes of some numbers, their total variation.
-class TotalVariation {
- public:
-  void add(const Eigen::ArrayXd& values) {
-    if (sums_.size() == 0) sums_ = Eigen::ArrayXd::Zero(values.size());
-    if (last_.size() > 0) sums_ += (values - last_).abs();
-    last_ = values;
-  }
-  const Eigen::ArrayXd& sums() const { return sums_; }
-
- private:
-  Eigen::ArrayXd last_, sums_;
-};
 
 /// Advances a flight under a controller: calls it at its rate, and commands the rotors after its
 /// delay.
@@ -43,10 +29,13 @@ class ControlLoop {
   /// Advances n steps. Throws what the flight, a command and the controller throw.
   void advance(std::int64_t n, const Call& call);
 
-  /// Total variation of the magnitude of each rotor's joint rate over all steps so far [rad/s].
-  const Eigen::ArrayXd& rate_variation() const { return rates_.sums(); }
-  /// Total variation of the magnitude of each command over all steps so far [rad/s].
-  const Eigen::ArrayXd& command_variation() const { return commands_.sums(); }
+  /// Return the total variation of the magnitude of each rotor's joint rate over all steps so far
+  /// [rad/s].
+  const std::vector<double>& rate_variation() const { return rates_.sums(); }
+  /// Return the total variation of the magnitude of each command over all steps so far [rad/s].
+  const std::vector<double>& command_variation() const { return commands_.sums(); }
+  /// Write the times of the present call and of the next ones if the flight goes on [s].
+  void list_times(double* times, std::size_t count) const;
 
  private:
   Simulation& simulation_;

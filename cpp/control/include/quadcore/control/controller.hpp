@@ -29,8 +29,11 @@ class Controller {
   /// hovering vehicle in both directions, yaw control is dropped and only the yaw rate is damped.
   /// \param period  time since the last call and until the next [s]
   /// \param speeds  (rotors(),) signed [rad/s]
+  /// \param flat    flat state of the reference as feeds() requires; null: computed if needed
   void command(double period, const Odometry& now, const Reference& wanted, double* state,
-               double* speeds) const;
+               double* speeds, const FlatState* flat = nullptr) const;
+  /// Return the flat state that command() uses.
+  ControlLaw::Feeds feeds() const { return law_->feeds(); }
   /// Set the remaining fraction of a rotor's thrust and torque.
   void set_remaining(std::size_t rotor, double left, double* state) const {
     actuation_.set_remaining(rotor, left, state);
@@ -45,10 +48,12 @@ class Controller {
   Controller(const ControllerInfo& law, const VehicleDescription& vehicle, const Values& values,
              const std::vector<double>& spins);
   static Values complete_values(const std::string& law, const Values& values);
+  void follow(double period, const Odometry& now, const Reference& wanted, const FlatState* flat,
+              double* state, double* speeds) const;
 
   ModelledVehicle model_;
   Actuation actuation_;
-  std::unique_ptr<const ControlLaw> law_;
+  std::shared_ptr<const ControlLaw> law_;
   std::size_t memory_size_;  ///< state values of law_
 };
 

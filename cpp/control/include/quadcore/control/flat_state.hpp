@@ -6,6 +6,9 @@
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
+/// Return the horizontal unit vector perpendicular to the vertical plane of a yaw.
+Vector3d across_yaw(double yaw);
+
 /// State of a vehicle that follows a reference exactly.
 struct FlatState {
   Matrix3d R_WF;     ///< orientation
@@ -14,6 +17,7 @@ struct FlatState {
   double thrust;     ///< thrust of all rotors along z of F [N]
   /// Acceleration of the centre of mass relative to the origin of F, in W [m/s^2].
   Vector3d a_FCcm_W = Vector3d::Zero();
+  Vector3d across_W;  ///< across_yaw() of the reference
 };
 
 /// Return the flat state for a reference. Position and yaw are a flat output of a quadrotor
@@ -21,21 +25,15 @@ struct FlatState {
 /// RA-L 2018, sec. II). Apart from a part along z of F, the rotors must exert m (a - g) + d v + q
 /// |v| v in W, where d is the mean drag along x and y of F. This force defines z of F, and x of F
 /// lies in the vertical plane of the yaw. The reference refers to the origin of F, Newton's law to
-/// the centre of mass, see at_centre_of_mass(). Throws Error if the reference is in free fall or
-/// points x of F straight up.
+/// the centre of mass, so the motion of the latter is found iteratively. Throws Error if the
+/// reference is in free fall or points x of F straight up.
 /// \param with_drag  whether to compensate the modelled drag
 FlatState flat_state(const Reference& wanted, const ModelledVehicle& model, bool with_drag);
 
-/// Return the reference of the centre of mass if the origin of F follows a reference in this
-/// attitude. With the offset r it is p + r, v + w x r, a + w' x r + w x (w x r) and so on. Because
-/// a reference ends with the snap, the second and third derivatives of w in F are taken as zero, as
-/// in a steady turn.
-Reference at_centre_of_mass(const Reference& wanted, const ModelledVehicle& model,
-                            const FlatState& flat);
-
-/// Return the orientation with z along the given nonzero direction and x in the vertical plane of
-/// the yaw.
-Matrix3d attitude_of(const Vector3d& z_W, double yaw);
+/// Return the orientation with z along the given nonzero direction and x in the vertical plane of a
+/// yaw.
+/// \param across_W  across_yaw()
+Matrix3d attitude_of(const Vector3d& z_W, const Vector3d& across_W);
 
 /// Return the torque of the rotors about the centre of mass for the angular acceleration w' =
 /// dw_WF_F [N m]: I w' + w x (I w + h) minus the aerodynamic torque.

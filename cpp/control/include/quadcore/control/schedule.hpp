@@ -34,7 +34,7 @@ class Schedule {
   template <class Ask>
   const double* update(double step, double dt, double* state, const Ask& ask) const {
     // By the number of steps, because a sum of times would drift.
-    const double due = std::floor(step * (rate_ * dt) + rounding) + 1;
+    const double due = count_due(step, dt);
     if (due > state[kAsked]) {
       state[kAsked] = due;
       double* const order = place(state, state[kSent]);
@@ -53,6 +53,21 @@ class Schedule {
     return arrived;
   }
 
+  /// Return the step of the first call after a step.
+  double next_call(double step, double dt) const {
+    const double due = count_due(step, dt);
+    do step += 1;
+    while (count_due(step, dt) == due);
+    return step;
+  }
+
+  /// Return the first step after an updated one at which a call is due or a command takes effect.
+  double next_event(double step, double dt, double* state) const {
+    const double call = next_call(step, dt);
+    if (state[kSent] == state[kArrived]) return call;
+    return std::min(call, place(state, state[kArrived])[0]);
+  }
+
  private:
   /// Number of calls plus one, commands sent and commands that took effect; then a ring buffer of
   /// pending commands, each with the step of its effect and the speeds.
@@ -60,6 +75,10 @@ class Schedule {
 
   static constexpr double rounding = 1e-6;  ///< tolerance as a fraction of a period or a step
 
+  /// Return the number of calls that are due up to a step.
+  double count_due(double step, double dt) const {
+    return std::floor(step * (rate_ * dt) + rounding) + 1;
+  }
   std::size_t place_size() const { return 1 + rotors_; }
   double* place(double* state, double count) const {
     return state + kUnderWay + ring_index(count, places_) * place_size();

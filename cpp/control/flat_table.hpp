@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+#include "flat_states.hpp"
+#include "quadcore/control/flat_state.hpp"
+
+namespace quadcore::control {
+
+/// Return the parts of an air resistance that the force depends on.
+AirNumbers numbers_of(const AirResistance& air);
+
+/// Flat states of a vehicle for up to widest_lanes references at once.
+class FlatTable {
+ public:
+  FlatTable(const ModelledVehicle& model, bool with_drag);
+
+  /// Set the reference of a column.
+  void set(std::size_t column, const Reference& wanted);
+  /// Compute the flat states of the first columns.
+  void solve(std::size_t columns);
+  /// Return the flat state of a column, or nothing if the attitude is undefined.
+  std::optional<FlatState> state(std::size_t column) const;
+
+ private:
+  double* at(std::size_t row, std::size_t column) { return &rows_[row * widest_lanes + column]; }
+  template <class Vector>
+  void get(std::size_t row, std::size_t column, Vector&& vector) const;
+
+  FlatVehicle vehicle_;
+  double rows_[FlatRow::count * widest_lanes] = {};
+};
+
+}  // namespace quadcore::control

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "quadcore/control/controller.hpp"
+#include "quadcore/control/reference.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
+namespace control {
+
+class FlatTable;
+
+/// Points of a reference with the flat states that a controller uses. They are computed for several
+/// calls at once, because processors compute several flat states as fast as one. The results are
+/// bit-identical to those for single points.
+class ReferencePreview {
+ public:
+  /// A point of the reference.
+  struct Point {
+    double time;                    ///< s
+    Reference wanted;               ///< reference at this time
+    std::optional<FlatState> flat;  ///< its flat state, if the controller uses it and it is defined
+  };
+  /// Writes the times of the present call and of the next ones if the flight goes on [s].
+  using ListTimes = std::function<void(double* times, std::size_t count)>;
+
+  /// \param controller  copied as far as needed
+  explicit ReferencePreview(const Controller& controller);
+  ReferencePreview(ReferencePreview&&) noexcept;
+  ~ReferencePreview();
+
+  /// Return the point at the time of the present call.
+  const Point& at(double time, const ReferenceShape& reference, const ListTimes& list_times);
+
+ private:
+  void look_ahead(const ReferenceShape& reference, const ListTimes& list_times);
+
+  std::unique_ptr<FlatTable> table_;           ///< null if the controller uses no flat state
+  const ReferenceShape* reference_ = nullptr;  ///< of the points
+  std::vector<Point> points_;
+  std::size_t present_ = 0;  ///< point of the last call
+};
+
+}  // namespace control
+}  // namespace quadcore

@@ -1,0 +1,43 @@
+#include "quadcore/control/reference_preview.hpp"
+
+#include "flat_table.hpp"
+
+namespace quadcore::control {
+
+ReferencePreview::ReferencePreview(const Controller& controller) {
+  using Feeds = ControlLaw::Feeds;
+  const Feeds feeds = controller.feeds();
+  if (feeds == Feeds::nothing) return;
+  table_ = std::make_unique<FlatTable>(controller.model(), feeds == Feeds::flat_state_with_drag);
+}
+
+ReferencePreview::ReferencePreview(ReferencePreview&&) noexcept = default;
+ReferencePreview::~ReferencePreview() = default;
+
+const ReferencePreview::Point& ReferencePreview::at(double time, const ReferenceShape& reference,
+                                                    const ListTimes& list_times) {
+  const auto is_at = [&](std::size_t point) {
+    return point < points_.size() && points_[point].time == time && reference_ == &reference;
+  };
+  if (!is_at(present_)) ++present_;
+  if (!is_at(present_)) look_ahead(reference, list_times);
+  return points_[present_];
+}
+
+void ReferencePreview::look_ahead(const ReferenceShape& reference, const ListTimes& list_times) {
+  points_.clear();
+  reference_ = &reference;
+  present_ = 0;
+  const std::size_t count = table_ ? widest_lanes : 1;
+  double times[widest_lanes];
+  list_times(times, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    points_.push_back({times[i], reference.at(times[i]), {}});
+    if (table_) table_->set(i, points_.back().wanted);
+  }
+  if (!table_) return;
+  table_->solve(count);
+  for (std::size_t i = 0; i < count; ++i) points_[i].flat = table_->state(i);
+}
+
+}  // namespace quadcore::control

@@ -1,0 +1,279 @@
+"""Flights of built-in or vectorized controllers that run together on one batch."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from .. import _core
+from .._core import QuadcoreError, Rotor
+from ..control.built_in import BuiltInController
+from ..control.controller import SENSED
+from ..control.references import Shape
+from ..control.vectorized import is_vectorized
+from ..simulation.controller_pilot import ControllerPilot
+from ..simulation.flight import count_steps, list_columns
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.log import Log
+from ..simulation.state import State
+from ..simulation.trajectory import per_command
+from ..support.warning import suppress_warnings
+from .time_limit import time_limit
+
+ENGINES = ("eigen", "gazebo11")
+"""Engines with batches that step several vehicles per instruction."""
+
+MOST = 64
+"""Maximum number of flights of a group; their logs are in memory together."""
+
+MOST_VECTORIZED = 256
+"""The same for vectorized controllers. Their cost per call depends little on the number."""
+
+
+class FlightRecord(NamedTuple):
+    """Result of a flight with a controller, from which the metrics are computed."""
+
+    log: Log
+    failure: str
+    """Reason of a failure; "" for success."""
+    calls: int
+    """Number of calls of the controller."""
+    saturated: int
+    """Those with a command that the rotors could not follow."""
+    variation: Tuple[np.ndarray, np.ndarray]
+    """As in `ControllerPilot.variation`."""
+    seconds: np.ndarray
+    """Duration of some of the calls, s."""
+    warnings: Sequence[str]
+    """Warnings, as in `Simulation.warnings`."""
+    pilot: ControllerPilot
+    """Pilot of a flight of the same vehicle, with rate and delay."""
+    rotors: Sequence[Rotor]
+    """Rotors of the vehicle, as in `Simulation.rotors`."""
+
+
+def fly_group(
+    described: Sequence[Callable[[], FlightPlan]], limit: float
+) -> Optional[List[FlightRecord]]:
+    """Simulate flights on one batch, bit-identical to single flights.
+
+    Parameters
+    ----------
+    described
+        Functions that return the plans of the flights.
+    limit
+        Wall-clock limit of each flight, s.
+
+    Returns
+    -------
+    list of FlightRecord, or None
+        Outcomes; None if the flights cannot share a batch, or one of them has an error, which
+        single flights show.
+    """
+    try:
+        with time_limit(len(described) * limit), suppress_warnings():
+            plans = [describe() for describe in described]
+            if not _are_alike(plans):
+                return None
+            if _are_built_in(plans):
+                return _fly(plans)
+            return _fly_vectorized(plans) if _differ_in_seed(plans) else None
+    except QuadcoreError:
+        return None
+
+
+def share_out(rows: Sequence[int], processes: int) -> List[Sequence[int]]:
+    """Split rows into groups: few enough to balance the load of the processes."""
+    least = 4 * processes
+    return split(rows, max(1, min(MOST, len(rows) // least)))
+
+
+def split(rows: Sequence[int], size: int) -> List[Sequence[int]]:
+    """Split rows into groups of a size."""
+    return [rows[i : i + size] for i in range(0, len(rows), size)]
+
+
+def _are_alike(plans: Sequence[FlightPlan]) -> bool:
+    """Whether plans differ only in vehicle, seed, controller and reference."""
+    first = plans[0]
+    return first.engine in ENGINES and all(
+        plan.commands is None
+        and plan.rotor_velocity is None
+        and not plan.wrenches
+        and not plan.topics
+        and plan.world is first.world
+        and all(getattr(plan, name) == getattr(first, name) for name in _SHARED)
+        for plan in plans
+    )
+
+
+_SHARED = ("engine", "dt", "duration", "log_every", "on_reference")
+
+
+def _are_built_in(plans: Sequence[FlightPlan]) -> bool:
+    """Whether all controllers and references are built in."""
+    return all(
+        isinstance(plan.controller, BuiltInController) and isinstance(plan.reference, Shape)
+        for plan in plans
+    )
+
+
+def _differ_in_seed(plans: Sequence[FlightPlan]) -> bool:
+    """Whether plans differ only in the seed and the instance of a vectorized controller."""
+    first = plans[0]
+    return all(
+        is_vectorized(plan.controller)
+        and plan.model is first.model
+        and plan.parameters == first.parameters
+        and plan.spawn == first.spawn
+        and plan.reference is first.reference
+        for plan in plans
+    )
+
+
+class _Kind:
+    """Flights that differ only in the seed."""
+
+    def __init__(self, plan: FlightPlan) -> None:
+        simulation = plan.simulation()
+        if simulation.time != 0:
+            raise QuadcoreError("flights in a saved world are simulated alone")
+        pilot = plan.pilot(simulation)
+        assert pilot is not None
+        pilot.reset(simulation)
+        self.guide = pilot.built_in if pilot.is_built_in else None
+        self.plan, self.pilot, self.rotors = plan, pilot, simulation.rotors
+        self.columns = list_columns(simulation, (), pilot)
+        self.start = plan.find_start(simulation)
+        self.dt = simulation.dt
+        self._simulation = simulation  # the controller refers to it
+        self._per_command = per_command(simulation)
+        self._beside = np.empty((0, 0))
+
+    def make_log(self, table: np.ndarray) -> Log:
+        """Make the log of a flight from its rows, which begin at the same times."""
+        if len(self._beside) < len(table):
+            self._beside = self.pilot.sample(table[:, 0])
+        wanted = self._beside[: len(table)]
+        whole = np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
+        log = Log.of_rows(whole, self.columns, {}, self._simulation.ignored)
+        log.per_command = self._per_command
+        return log
+
+
+def _make_row(state: State) -> np.ndarray:
+    """Return a state as a row of `BatchSimulation.read_state`."""
+    return np.concatenate(
+        [
+            state.position,
+            state.orientation,
+            state.linear_velocity,
+            state.angular_velocity,
+            state.rotor_velocity,
+            state.rotor_angle,
+        ]
+    )
+
+
+def _identify(plan: FlightPlan) -> Any:
+    """Return what flights that differ only in the seed have in common."""
+    controller = plan.controller
+    return (
+        id(plan.model),
+        tuple(sorted(plan.parameters.items())),
+        plan.spawn,
+        id(plan.reference),
+        (controller.name, controller.rate, controller.delay, tuple(controller.spins)),
+        (id(controller.belief), tuple(sorted(controller.parameters.items()))),
+    )
+
+
+def _make_batch(plans: Sequence[FlightPlan], kinds: Sequence[_Kind]) -> _core.Batch:
+    """Make the batch of plans at their start."""
+    first = plans[0]
+    batch = _core.Batch(
+        [kind.plan.model for kind in kinds],
+        first.world,
+        first.engine,
+        first.dt,
+        [dict(kind.plan.parameters) for kind in kinds],
+        np.array([plan.spawn for plan in plans]),
+        np.array([plan.seed for plan in plans], np.uint64),
+        1,
+    )
+    rows = [_make_row(kind.start) for kind in kinds if kind.start is not None]
+    if rows:
+        batch._take_state(np.array(rows))
+    return batch
+
+
+def _fly(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
+    first = plans[0]
+    found: Dict[Any, _Kind] = {}
+    kinds: List[_Kind] = []
+    for plan in plans:
+        key = _identify(plan)
+        if key not in found:
+            found[key] = _Kind(plan)
+        kinds.append(found[key])
+    batch = _make_batch(plans, kinds)
+    laws, references = zip(*(kind.guide for kind in kinds if kind.guide is not None))
+    tables, rows, calls, saturated, rates, commands, seconds = batch._follow(
+        laws,
+        references,
+        np.array([kind.pilot.rate for kind in kinds]),
+        np.array([kind.pilot.delay for kind in kinds]),
+        SENSED,
+        count_steps(first.duration, batch.dt),
+        first.log_every,
+        range(len(kinds)),
+    )
+    failures = batch.failures
+    return [
+        FlightRecord(
+            kind.make_log(tables[i, : rows[i]]),
+            failures[i],
+            int(calls[i]),
+            int(saturated[i]),
+            (rates[i], commands[i]),
+            seconds[i],
+            batch.warnings(i),
+            kind.pilot,
+            kind.rotors,
+        )
+        for i, kind in enumerate(kinds)
+    ]
+
+
+def _fly_vectorized(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
+    first, n = plans[0], len(plans)
+    kind = _Kind(first)
+    try:
+        command_all = kind.pilot.command_all(n)
+        batch = _make_batch(plans, [kind] * n)
+        tables, rows, rates, commands = batch._follow_together(
+            command_all,
+            kind.pilot.rate,
+            kind.pilot.delay,
+            SENSED,
+            count_steps(first.duration, batch.dt),
+            first.log_every,
+        )
+    finally:
+        kind.pilot.close()
+    failures = batch.failures
+    return [
+        FlightRecord(
+            kind.make_log(tables[i, : rows[i]]),
+            failures[i],
+            command_all.calls,
+            int(command_all.saturated[i]),
+            (rates[i], commands[i]),
+            np.empty(0),
+            batch.warnings(i),
+            kind.pilot,
+            kind.rotors,
+        )
+        for i in range(n)
+    ]
