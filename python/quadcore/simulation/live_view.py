@@ -7,8 +7,8 @@ from typing import List, Optional, Sequence
 import numpy as np
 
 from .._core import Model
+from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
-from ..report.drawn_vehicle import DrawnWorld
 from ..report.page_server import EVENTS, PageServer
 from ..report.player import list_columns, make_live_page
 from .log import Log
@@ -55,7 +55,7 @@ class LiveView:
                 vehicle.name,
                 empty,
                 vehicle,
-                DrawnWorld(simulation.world.ground_plane),
+                draw_world(simulation.world),
                 EVENTS,
                 find_speed_limit(simulation.rotors),
             )

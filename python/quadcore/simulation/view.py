@@ -11,6 +11,7 @@ import numpy as np
 
 from .._core import InputError, Model
 from ..model.description import read_model
+from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
 from ..report.cameras import CAMERAS
 from ..report.drawn_vehicle import DrawnVehicle, DrawnWorld
@@ -52,7 +53,7 @@ class View:
             columns = list_columns(shown)
             self._simulation: Optional[Simulation] = shown
             self._vehicle: Optional[DrawnVehicle] = read_vehicle(shown.model)
-            self._world = DrawnWorld(shown.world.ground_plane)
+            self._world = draw_world(shown.world)
             self._rows = Rows(shown, columns)
             self._live = LiveView(shown, columns, every=1)
             self._server = self._live.page
