@@ -33,7 +33,7 @@ def test_what_nothing_feels_of_a_world_is_named_in_one_warning(flown):
 STORM = '<plugin name="storm" filename="libstorm.so"><force>1</force></plugin>'
 HOUSE = "<include><uri>model://house</uri><pose>1 0 0 0 0 0</pose></include>"
 WALL = (
-    '<model name="wall"><static>1</static><pose>1 0 0 0 0 0</pose><link name="a">'
+    '<model name="wall"><static>0</static><pose>1 0 0 0 0 0</pose><link name="a">'
     '<collision name="b"><surface/><geometry><box/></geometry></collision></link></model>'
 )
 
