@@ -106,6 +106,7 @@ const std::vector<HarmlessElement>& list_harmless_elements() {
       {"libContainPlugin.so", "", "whether a model is inside a region"},
       {"libSimEventsPlugin.so", "", "events of the simulation"},
       {"libusv_gazebo_wind_plugin.so", "", "wind on the boats that it names"},
+      {"libWavefieldModelPlugin.so", "", "waves for boats"},
       {"libgazebo_ros.so", "", connection},
       {"libgazebo_ros_api_plugin.so", "", connection},
       {"libgazebo_ros_state.so", "", connection},

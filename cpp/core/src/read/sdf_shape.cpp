@@ -55,17 +55,14 @@ Surface read_static_surface(const Xml& xml, const Element& collision) {
   return surface;
 }
 
-/// Reject what would change a contact but is not modelled, unless the user ignores it.
+/// Reject torsional friction, which is not modelled, unless the user ignores it. It is in
+/// proportion to the radius of the patch of contact, which is 0 by default.
 void refuse_torsional_friction(const Xml& xml, const Element& collision) {
-  const auto refuse = [&](const Element& e) {
-    if (xml.ignored_elements().ignores({e.Name()})) return;
-    xml.fail(e, "<" + std::string(e.Name()) + "> is not supported. Remove it." +
-                    suggest_ignoring(e.Name()));
-  };
-  const Element* friction = descend(&collision, {"surface", "friction"});
-  const Element* torsional = descend(friction, {"torsional"});
-  const Element* patch = descend(torsional, {"coefficient"});
-  if (patch && !xml.text(*patch).empty()) refuse(*torsional);
+  const Element* torsional = descend(&collision, {"surface", "friction", "torsional"});
+  const bool has_patch = number_or(xml, torsional, "patch_radius", 0) != 0 ||
+                         number_or(xml, torsional, "surface_radius", 0) != 0;
+  if (!has_patch || xml.ignored_elements().ignores({"torsional"})) return;
+  xml.fail(*torsional, "<torsional> is not supported. Remove it." + suggest_ignoring("torsional"));
 }
 
 bool is_true(const Xml& xml, const Element* e) {
