@@ -52,6 +52,10 @@ WORLDS = {
     "empty": "Gazebo's defaults without ground; the default world",
     "default": "the thesis' world: Gazebo's defaults with ground",
     "basic": "RotorS' world: ground, steps of 10 ms, a thousand sweeps of the solver",
+    "forest": "150 trunks on the ground, as examples/make_forest.py 1 writes them",
+    "landing_platform": "a platform of 1 m by 1 m on the ground, with its top at z = 0.5 m",
+    "slalom": "six poles around the path of the reference eight",
+    "window": "a wall at x = 3 m with a window of 1.5 m by 1.5 m around z = 10 m",
 }
 
 

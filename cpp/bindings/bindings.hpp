@@ -10,6 +10,7 @@ namespace py = pybind11;
 
 void bind_errors(py::module_& m);
 void bind_model(py::module_& m);
+void bind_clearance(py::module_& m);
 void bind_plugins(py::module_& m);
 void bind_snapshot(py::module_& m);
 void bind_simulation(py::module_& m);

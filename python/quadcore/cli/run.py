@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Sequence
 
 from .._core import InputError, QuadcoreError
 from ..formats.rows import Recorder
+from ..simulation.clearance import Clearance
 from ..simulation.controller_pilot import convert_controller_errors
 from ..simulation.engines import check_wrenches, list_engines
 from ..simulation.flight import count_steps, fly, list_columns
@@ -88,7 +89,8 @@ def _run(arguments: argparse.Namespace) -> None:
     pilot = plan.pilot(simulation)
     columns = list_columns(simulation, plan.topics, pilot)
     fastest, drawn, errors = FastestRotor(simulation), None, None
-    others: list[Recorder] = [fastest]
+    clearance = Clearance(plan.model, plan.world)
+    others: list[Recorder] = [fastest, clearance]
     if pilot is not None:
         errors = TrackingError(columns)
         others.append(errors)
@@ -129,7 +131,7 @@ def _run(arguments: argparse.Namespace) -> None:
     elapsed = time.perf_counter() - started
     with interrupts.hold_signals():
         files = recording.close()
-    result = summarize(arguments, plan, simulation, fastest, elapsed, pilot, errors)
+    result = summarize(arguments, plan, simulation, fastest, clearance, elapsed, pilot, errors)
     rows = describe_result(result)
     if drawn is not None:
         files += described

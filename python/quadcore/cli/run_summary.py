@@ -7,6 +7,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 
+from ..simulation.clearance import Clearance, Encounter
 from ..simulation.controller_pilot import ControllerPilot
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.recording import TAIL, FastestRotor, TrackingError
@@ -20,6 +21,7 @@ def summarize(
     plan: FlightPlan,
     simulation: Simulation,
     fastest: FastestRotor,
+    clearance: Clearance,
     elapsed: float,
     pilot: Optional[ControllerPilot],
     errors: Optional[TrackingError],
@@ -44,6 +46,10 @@ def summarize(
         result["max_rotor_speed_commanded"] = float(fastest.speed / size)
     if simulation.world.ignored_models:
         result["ignored_models"] = simulation.world.ignored_models
+    if clearance.nearest is not None:
+        result["clearance"] = clearance.minimum
+        result["nearest_obstacle"] = clearance.nearest._asdict()
+        result["collisions"] = [collision._asdict() for collision in clearance.collisions]
     counts = [
         simulation.topic(name)["steps"]
         for name, topic in simulation.topics.items()
@@ -84,6 +90,12 @@ def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
     if "ignored_models" in result:
         names = ", ".join(result["ignored_models"])
         rows.append(("missing in the world", f"{names}: the vehicle passes through"))
+    if "clearance" in result:
+        nearest = Encounter(**result["nearest_obstacle"])
+        rows.append(("clearance", f"{result['clearance']:.4g} m from {nearest}"))
+        collisions = [Encounter(**collision) for collision in result["collisions"]]
+        first = f", the first with {collisions[0]}" if collisions else ""
+        rows.append(("collisions", f"{len(collisions)}{first}"))
     if "saturated_steps" in result:
         rows.append(("saturated steps", str(result["saturated_steps"])))
     if "controller" in result:

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 
 from .. import _core
-from .._core import QuadcoreError, Rotor
+from .._core import Model, QuadcoreError, Rotor, World
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED
 from ..control.references import Shape
@@ -51,6 +51,8 @@ class FlightRecord(NamedTuple):
     """Pilot of a flight of the same vehicle, with rate and delay."""
     rotors: Sequence[Rotor]
     """Rotors of the vehicle, as in `Simulation.rotors`."""
+    model: Model
+    world: World
 
 
 def fly_group(
@@ -241,6 +243,8 @@ def _fly(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
             batch.warnings(i),
             kind.pilot,
             kind.rotors,
+            plans[i].model,
+            plans[i].world,
         )
         for i, kind in enumerate(kinds)
     ]
@@ -274,6 +278,8 @@ def _fly_vectorized(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
             batch.warnings(i),
             kind.pilot,
             kind.rotors,
+            plans[i].model,
+            plans[i].world,
         )
         for i in range(n)
     ]

@@ -11,6 +11,7 @@ from .._core import FlightError
 from ..model.visuals import read_vehicle
 from ..report.decimation import decimate
 from ..report.drawn_vehicle import DrawnVehicle
+from ..simulation.clearance import Clearance
 from ..simulation.controller_pilot import convert_controller_errors
 from ..simulation.flight import Rows, fly, list_columns
 from ..simulation.flight_plan import FlightPlan
@@ -134,6 +135,8 @@ def fly_and_measure(
             simulation.warnings,
             pilot,
             rotors,
+            flight.model,
+            flight.world,
         )
     )._replace(seconds=time.perf_counter() - started)
     if watch:
@@ -182,7 +185,12 @@ def _make_outcome(flight: FlightRecord) -> Outcome:
     measures = NAN
     if not failure:
         share = flight.saturated / max(1, flight.calls)
-        measures = measure(flight.log, share, flight.rotors, flight.variation)
+        clearance = Clearance(flight.model, flight.world)
+        clearance.receive(flight.log.table, np.empty(0))
+        measures = {
+            **measure(flight.log, share, flight.rotors, flight.variation),
+            **clearance.measures(),
+        }
     call, slow_call = summarise_durations(flight.seconds)
     return Outcome(
         failure,

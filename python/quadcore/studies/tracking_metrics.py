@@ -33,6 +33,8 @@ UNITS = {
     "max_tilt": "rad",
     "max_speed": "m/s",
     "max_rate": "rad/s",
+    "clearance": "m",
+    "collisions": "",
 }
 """Unit of each metric, by name."""
 
@@ -54,6 +56,8 @@ MEANINGS = {
     "max_tilt": "maximum angle between the z axes of frame and world",
     "max_speed": "maximum speed of the frame's origin",
     "max_rate": "maximum norm of the angular velocity",
+    "clearance": "minimum distance from an obstacle of the world",
+    "collisions": "number of collisions with obstacles of the world",
 }
 
 _SETTLED = 0.02  # of a step
@@ -110,7 +114,8 @@ def measure(
     Returns
     -------
     dict
-        Value of each metric in `UNITS`; NaN if undefined, such as the overshoot without a step.
+        Value of each metric in `UNITS` up to the energy; NaN if undefined, such as the overshoot
+        without a step.
     """
     time, away = log.time - log.time[0], compute_errors(log)
     tail = time > time[-1] - TAIL

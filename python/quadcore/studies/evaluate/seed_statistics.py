@@ -73,7 +73,9 @@ def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str
         row[f"low_{name}"], row[f"high_{name}"] = compute_interval(drawn)
         # A failure is worse than any success.
         lost = np.full(len(took_place) - len(flew), math.inf)
-        row[f"cvar_{name}"] = compute_cvar(np.concatenate([values, lost]))
+        sign = -1 if name == "clearance" else 1  # the smallest clearances are the worst
+        worst = compute_cvar(np.concatenate([sign * values, lost]))
+        row[f"cvar_{name}"] = sign * worst if math.isfinite(worst) else worst
         apart = _pick_finite([f.measures[name] - other.measures[name] for f, other in pairs])
         if flights is first:
             apart = apart[:0]

@@ -1,0 +1,133 @@
+#include "quadcore/clearance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quadcore {
+namespace {
+
+using Convex = Clearance::Convex;
+
+constexpr int most_projections = 1000;
+constexpr double least_progress = 1e-9;  // m
+
+double outer_radius_of(ShapeKind kind, const Vector3d& size) {
+  if (kind == ShapeKind::box) return size.norm() / 2;
+  return kind == ShapeKind::cylinder ? std::hypot(size.x(), size.y() / 2) : size.x();
+}
+
+Convex make_convex(ShapeKind kind, const Vector3d& size, const Vector3d& position,
+                   const Quaterniond& rotation) {
+  return {kind, size, position, rotation, outer_radius_of(kind, size)};
+}
+
+/// Return the point of a shape that is nearest to a point, both in the same axes as the shape.
+Vector3d project(const Convex& shape, const Vector3d& point) {
+  Vector3d p = shape.rotation.conjugate() * (point - shape.position);
+  switch (shape.kind) {
+    case ShapeKind::box:
+      p = p.cwiseMax(-shape.size / 2).cwiseMin(shape.size / 2);
+      break;
+    case ShapeKind::cylinder: {
+      const double around = p.head<2>().norm();
+      if (around > shape.size.x()) p.head<2>() *= shape.size.x() / around;
+      p.z() = std::clamp(p.z(), -shape.size.y() / 2, shape.size.y() / 2);
+      break;
+    }
+    default:
+      if (p.norm() > shape.size.x()) p *= shape.size.x() / p.norm();
+  }
+  return shape.position + shape.rotation * p;
+}
+
+/// Return the distance of two convex shapes by alternating projections, which converge to the
+/// nearest points of two convex sets (Cheney, Goldstein 1959).
+double distance_between(const Convex& a, const Convex& b) {
+  Vector3d p = a.position;
+  double distance = INFINITY;
+  for (int i = 0; i < most_projections; ++i) {
+    const Vector3d q = project(b, p);
+    p = project(a, q);
+    const double shorter = (p - q).norm();
+    if (distance - shorter < least_progress) return shorter;
+    distance = shorter;
+  }
+  return distance;
+}
+
+/// Return the extent of a shape along a direction, from its centre [m].
+double extent(const Convex& shape, const Vector3d& direction) {
+  const Vector3d along = shape.rotation.conjugate() * direction;
+  if (shape.kind == ShapeKind::box) return along.cwiseAbs().dot(shape.size) / 2;
+  if (shape.kind == ShapeKind::sphere) return shape.size.x();
+  return shape.size.x() * along.head<2>().norm() + shape.size.y() / 2 * std::abs(along.z());
+}
+
+/// Return the cylinder around a joint's axis that contains what a shape of the child link sweeps.
+Convex sweep(const Convex& shape, const Vector3d& axis) {
+  const double along = shape.position.dot(axis);
+  const Vector3d aside = shape.position - along * axis;
+  double radius = 0;
+  const Vector3d own_axis = shape.rotation * Vector3d::UnitZ();
+  const double cosine = std::abs(own_axis.dot(axis));
+  if (shape.kind == ShapeKind::box) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3d signs(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+      const Vector3d p = shape.position + shape.rotation * (signs.cwiseProduct(shape.size) / 2);
+      radius = std::max(radius, (p - p.dot(axis) * axis).norm());
+    }
+  } else {
+    const double half = shape.kind == ShapeKind::cylinder ? shape.size.y() / 2 : 0;
+    radius = aside.norm() + shape.size.x() + half * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  }
+  return make_convex(ShapeKind::cylinder, {radius, 2 * extent(shape, axis), 0}, along * axis,
+                     Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis));
+}
+
+}  // namespace
+
+Clearance::Clearance(const Model& model, const World& world) : given_(world.obstacles) {
+  const std::vector<Eigen::Isometry3d> X_FL = link_poses(model);
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const Quaterniond R_FL(X_FL[i].linear());
+    for (const Collision& shape : model.links[i].collisions) {
+      if (shape.kind == ShapeKind::mesh) continue;
+      Convex convex = make_convex(shape.kind, shape.size, shape.pose.xyz, shape.pose.rotation());
+      if (i > 0) convex = sweep(convex, model.joints[i - 1].axis);
+      convex.position = X_FL[i] * convex.position;
+      convex.rotation = R_FL * convex.rotation;
+      shapes_F_.push_back(convex);
+    }
+  }
+  for (const Obstacle& o : given_) {
+    const ShapeKind kind = o.kind == ObstacleKind::box        ? ShapeKind::box
+                           : o.kind == ObstacleKind::cylinder ? ShapeKind::cylinder
+                                                              : ShapeKind::sphere;
+    obstacles_W_.push_back(make_convex(kind, o.size, o.position_W, o.orientation_W));
+  }
+}
+
+Clearance::Nearest Clearance::find(const Vector3d& p_WF, const Quaterniond& R_WF) const {
+  Nearest nearest;
+  for (Convex shape : shapes_F_) {
+    shape.position = p_WF + R_WF * shape.position;
+    shape.rotation = R_WF * shape.rotation;
+    for (std::size_t i = 0; i < given_.size(); ++i) {
+      double distance = 0;
+      if (given_[i].kind == ObstacleKind::plane) {
+        const Vector3d normal = given_[i].size.normalized();
+        distance = std::max(0.0, distance_to(given_[i], shape.position) - extent(shape, normal));
+      } else {
+        const Convex& obstacle = obstacles_W_[i];
+        const double bound =
+            (obstacle.position - shape.position).norm() - obstacle.radius - shape.radius;
+        if (bound >= nearest.distance) continue;
+        distance = distance_between(shape, obstacle);
+      }
+      if (distance < nearest.distance) nearest = {distance, i};
+    }
+  }
+  return nearest;
+}
+
+}  // namespace quadcore
