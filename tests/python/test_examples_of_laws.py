@@ -112,3 +112,14 @@ def test_the_main_job_flies_what_its_settings_say(tmp_path, monkeypatch):
     for (law, _), log in logs.items():
         assert 0 < spiral.tracking_error(log).max() < (1e-3 if law == "geometric" else 0.1)
     assert png(spiral.picture(logs)).startswith(b"\x89PNG")
+
+
+def test_the_predictive_controller_beats_feedback_without_its_feed_forward(monkeypatch):
+    monkeypatch.chdir(EXAMPLES / "nmpc")
+    evaluation = qc.evaluate(
+        ["nmpc.py", "geometric:feed_forward=false"], "circle:radius=2,rate=1.5", duration=5.0,
+        xacro_args={"sim_slow": 1},
+    )  # fmt: skip
+    predictive, feedback = evaluation.table
+    assert predictive["failure"] == feedback["failure"] == ""
+    assert predictive["rms_position"] < 0.5 * feedback["rms_position"]
