@@ -27,8 +27,8 @@ struct Ideal {
 
   /// Newton and Euler, by Heun's method; the demand is held.
   void step(const Reference& wanted) {
-    const Demand demand =
-        law->demand({period, begins, now, wanted, last, Vector3d::Zero(), false}, memory.data());
+    const Demand demand = law->demand(
+        {period, begins, now, wanted, nullptr, last, Vector3d::Zero(), false}, memory.data());
     begins = false;
     last = demand;
     const auto acceleration = [&](const Odometry& o) -> Vector3d {
