@@ -115,7 +115,7 @@ def check_log_rows(place: Callable[[int], str], rows: np.ndarray, of_state: int)
         raise InputError(f"{place(0)}: the log has no rows. Write one for the start at least.")
     wrong = ~np.isfinite(rows[:, :of_state]).all(axis=1)
     if wrong.any():
-        raise InputError(f"{place(int(wrong.argmax()))}: the state is not finite")
+        raise InputError(f"{place(int(wrong.argmax()))}: the state is not finite. Correct the row.")
     where = log_columns(0).index("qx")
     turned = np.abs(np.linalg.norm(rows[:, where : where + 4], axis=1) - 1) > _ROUNDNESS
     if turned.any():

@@ -243,7 +243,7 @@ class Log(Trajectory):
 
     def _check_suffix(self, path: PathLike, suffix: str) -> None:
         if _check_path(path).suffix.lower() != suffix:
-            raise InputError(f"{path}: name a file that ends in {suffix}, which it would hold")
+            raise InputError(f"{path}: is not a {suffix} file. Name a file that ends in {suffix}.")
 
 
 def _check_path(path: PathLike, argument: str = "path") -> Path:

@@ -99,6 +99,6 @@ def pick_controller_values(point: Mapping[str, str]) -> Dict[str, float]:
         if name.startswith(OF_CONTROLLER):
             value = parse_number(text)
             if value is None:
-                raise InputError(f"vary {name}: '{text}' is not a finite number")
+                raise InputError(f"vary {name}: '{text}' is not a finite number. Write one.")
             found[name[len(OF_CONTROLLER) :]] = value
     return found

@@ -78,7 +78,7 @@ def find_controller(text: str, make: Callable[[Any], Any]) -> Any:
     except BaseException as error:  # SystemExit, too
         raise _describe_failure(text, error) from error
     if not callable(controller):
-        raise InputError(f"controller '{text}': it cannot be called as {_FORM}")
+        raise InputError(f"controller '{text}': it cannot be called as {_FORM}. Define it so.")
     return controller
 
 
@@ -89,12 +89,15 @@ def _find_in_module(text: str, module: str, name: str) -> Any:
         if not f"{module}.".startswith(f"{error.name}."):
             raise
         raise InputError(
-            f"controller '{text}': there is no module '{module}' here or on PYTHONPATH"
+            f"controller '{text}': there is no module '{module}' here or on PYTHONPATH. "
+            "Correct its name, or name its file."
         ) from error
     except AttributeError as error:
         if module not in sys.modules or hasattr(sys.modules[module], name):
             raise
-        raise InputError(f"controller '{text}': module '{module}' has no '{name}'") from error
+        raise InputError(
+            f"controller '{text}': module '{module}' has no '{name}'. Name one of its classes."
+        ) from error
 
 
 def _find_in_file(text: str, file: str, name: str) -> Any:

@@ -165,10 +165,12 @@ def _check_entry(where: str, name: str, given: Any) -> Entry:
     order = _choose(where, given, "order", tuple(_ORDERS), "xyzw")
     expected = _ORDERS[order] if name == "orientation" else QUANTITIES[name]
     if expected and len(columns) != expected:
-        raise InputError(f"{where}: {len(columns)} columns instead of {expected}.")
+        raise InputError(f"{where}: {len(columns)} columns instead of {expected}. Name {expected}.")
     signs = _read_numbers(where, given, "signs", float) or [1.0] * len(columns)
     if len(signs) != len(columns):
-        raise InputError(f"{where}: {len(signs)} signs for {len(columns)} columns.")
+        raise InputError(
+            f"{where}: {len(signs)} signs for {len(columns)} columns. Write one for each."
+        )
     limits = _read_numbers(where, given, "range", float)
     if limits is not None and (len(limits) != 2 or limits[0] >= limits[1]):
         raise InputError(f"{where}: range is {limits}. Write [LOW, HIGH].")

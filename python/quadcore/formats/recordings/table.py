@@ -18,7 +18,7 @@ def read_header(path: Path, data: bytes) -> List[str]:
     try:
         return [name.strip().strip('"') for name in line.decode("utf-8-sig").split(",")]
     except UnicodeDecodeError:
-        raise InputError(f"{path}: the format of this file is unknown.") from None
+        raise InputError(f"{path}: its format is unknown. Name another file.") from None
 
 
 def read_table(path: Path, data: bytes, wanted: Sequence[str], time: str) -> Columns:
@@ -48,7 +48,7 @@ def read_table(path: Path, data: bytes, wanted: Sequence[str], time: str) -> Col
     try:
         lines = data.decode("utf-8-sig").splitlines()[1:]
     except UnicodeDecodeError:
-        raise InputError(f"{path}: the format of this file is unknown.") from None
+        raise InputError(f"{path}: its format is unknown. Name another file.") from None
     table = np.empty((len(lines), len(names)))
     count = 0
     for number, line in enumerate(lines, start=2):
