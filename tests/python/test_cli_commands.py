@@ -211,7 +211,9 @@ def test_run_describes_the_flight_in_its_folder():
     assert {"quadcore", "date", "host", "arguments"} <= set(found)
     assert qc.Simulation("out/model.urdf").mass == qc.Simulation(parameters={"frame.mass": 2}).mass
     page = Path("out/report.html").read_text()
-    assert "--seed 3 --world basic" in page and "Tracking error" in page and "quadcore-player" in page
+    assert (
+        "--seed 3 --world basic" in page and "Tracking error" in page and "quadcore-player" in page
+    )
 
 
 @pytest.mark.parametrize(

@@ -29,8 +29,12 @@ def test_everything_is_written_and_reproducible():
     head = ["controller", "reference", "engine", "model", "scenario", "seed", "failure"]
     assert list(found[0])[:10] == [*head, "rms_position", "max_position", "final_position"]
     assert found[2]["reference"] == "step:dx=1,time=0.2"
-    for name in ("table.csv", "evaluation.json", "report.html", "seeds.png"):
+    for name in ("table.csv", "evaluation.json", "seeds.png"):
         assert Path("out", name).read_bytes() == Path("again", name).read_bytes(), name
+    # The head of a page has the command line and the date.
+    page, again = (Path(folder, "report.html").read_text() for folder in ("out", "again"))
+    assert page.partition("</header>")[2] == again.partition("</header>")[2] != ""
+    assert "--out out" in page and "--out again" in again
     content = json.loads(Path("out/evaluation.json").read_text())
     assert len(content["combinations"]) == 4
     timing = rows("out/timing.csv")

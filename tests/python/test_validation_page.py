@@ -38,7 +38,8 @@ def out(tmp_path_factory):
 def test_the_command_writes_tables_figures_and_one_page(out):
     page = (out / "report.html").read_text()
     sources = re.findall(r'(?:src|href)="([^"]{1,40})', page)
-    assert len(sources) == 8 and all(s.startswith("data:image/png;base64,") for s in sources)
+    pictures = [source for source in sources if not source.startswith("#section-")]
+    assert len(pictures) == 8 and all(s.startswith("data:image/png;base64,") for s in pictures)
     for kind in ("position", "error", "attitude", "velocity", "rates", "chain"):
         assert (out / f"{kind}_none.png").read_bytes().startswith(b"\x89PNG")
 
@@ -68,7 +69,10 @@ def test_the_same_command_writes_the_same_bytes_and_prints_what_it_found(out, tm
     names = sorted(path.name for path in out.iterdir())
     assert len(names) == 13
     for name in names:
-        assert (out / name).read_bytes() == (tmp_path / name).read_bytes(), name
+        one, other = ((folder / name).read_bytes() for folder in (out, tmp_path))
+        if name == "report.html":  # its head has the command line and the date
+            one, other = (page.partition(b"</header>")[2] for page in (one, other))
+        assert one == other != b"", name
 
 
 def test_the_page_sets_the_formula_of_the_damper_beside_no_engine_but_in_a_column_of_its_own(out):

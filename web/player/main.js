@@ -297,6 +297,11 @@ class Player {
 }
 
 async function start(root) {
+  const fold = root.closest("details:not([open])");
+  if (fold) {  // a browser draws only some scenes at once
+    fold.addEventListener("toggle", () => start(root), { once: true });
+    return;
+  }
   const content = JSON.parse(root.querySelector(".content").textContent);
   const numbers = readNumbers(await inflate(root.querySelector(".numbers").textContent.trim()));
   try {

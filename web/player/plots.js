@@ -115,5 +115,7 @@ function chooseRange(low, high, least) {
 }
 
 function format(value) {
-  return value === null ? "" : Number(value.toPrecision(6)).toString();
+  if (value === null) return "";
+  const isShort = value === 0 || Math.abs(value) >= 1e-3;
+  return isShort ? Number(value.toPrecision(6)).toString() : value.toExponential().replace("e-", "e\u2212");
 }

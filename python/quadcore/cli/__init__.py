@@ -10,6 +10,7 @@ from typing import Sequence
 
 from .. import __version__
 from .._core import FlightError, QuadcoreError
+from ..report.run_record import record_command
 from ..simulation.engines import ENGINE, STUDY_ENGINE
 from ..support import interrupts
 from ..support.output_files import printable_name
@@ -107,7 +108,8 @@ def _run_command(argv: Sequence[str] | None) -> int:
             if "action" not in arguments:
                 parser.error("name a COMMAND")
             arguments.words = words
-            arguments.action(arguments)
+            with record_command(words):
+                arguments.action(arguments)
             sys.stdout.flush()
     except QuadcoreError as error:
         terminal.print_message(f"error: {error}")

@@ -93,8 +93,6 @@ def write_results(
         "run.html",
         title=name,
         rows=rows,
-        arguments=shlex.join(["quadcore", *arguments.words]),
-        version=__version__,
         player=make_section([flight], draw_world(simulation.world)),
         plots=[(_PLOTS.get(file.stem, file.stem), file.read_bytes()) for file in plots],
     )

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import base64
+import re
 from pathlib import Path
+from typing import List, Match
 
 import jinja2
 
 from ..support.input_files import is_file
 from ..support.output_files import atomic_write, encode_text
 from .packing import compress
+from .run_record import describe_command
 
 _FOLDER = Path(__file__).parent
 _BUNDLE = _FOLDER / "bundle"  # scripts/bundle_player writes it
@@ -24,7 +27,7 @@ def write_page(path: Path, template: str, **values: object) -> None:
     InputError
         If the file cannot be written.
     """
-    page = render(template, **values)
+    page = _add_contents(render(template, run=describe_command(), **values))
     with atomic_write(path) as stream:
         stream.write(encode_text(page))
 
@@ -48,7 +51,7 @@ def render(template: str, **values: object) -> str:
         lstrip_blocks=True,
     )
     environment.filters["image"] = embed_image
-    text = environment.get_template(template).render(values)
+    text = environment.get_template(template).render({"run": {}, **values})
     return _add_player(text) if _PLAYER in text and "</body>" in text else text
 
 
@@ -69,9 +72,23 @@ def _add_player(page: str) -> str:
     return f"{head}<style>\n{style}</style>\n</head>{body}{end}\n</body>{rest}"
 
 
+def _add_contents(page: str) -> str:
+    """Add an anchor to each heading of a page, and list the headings at its top."""
+    titles: List[str] = []
+
+    def add_anchor(heading: Match[str]) -> str:
+        titles.append(re.sub(r"<[^>]*>", "", heading.group(1)))
+        return f'<h2 id="section-{len(titles)}">{heading.group(1)}</h2>'
+
+    page = re.sub(r"<h2>(.*?)</h2>", add_anchor, page, flags=re.DOTALL)
+    links = [f'<a href="#section-{i}">{title}</a>' for i, title in enumerate(titles, start=1)]
+    contents = f'<nav aria-label="contents">{" ".join(links)}</nav>' if len(links) > 1 else ""
+    return page.replace("<!-- contents -->", contents, 1)
+
+
 def embed_image(data: bytes, caption: str) -> str:
     """Make an HTML image that contains the bytes of a PNG."""
     from markupsafe import Markup
 
     source = f"data:image/png;base64,{base64.b64encode(data).decode()}"
-    return Markup('<img src="{}" alt="{}">').format(source, caption)
+    return Markup('<img class="plot" src="{}" alt="{}">').format(source, caption)

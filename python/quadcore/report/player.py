@@ -320,7 +320,8 @@ def _pack_plots(flights: Sequence[PlayerFlight], numbers: Numbers) -> List[Dict[
     for number, flight in enumerate(flights):
         for title, part, values in _list_curves(flight.log):
             panel = panels.setdefault(
-                title, {"name": title, "time": time, "least": 1e-6, "curves": [], "limits": []}
+                title,
+                {"name": title, "time": time, "least": _PANELS[title], "curves": [], "limits": []},
             )
             reduced = pick_extremes(flight.log.time, values, begin, end)
             packed = numbers.add(reduced, choose_quantum(reduced))
@@ -333,7 +334,14 @@ def _pack_plots(flights: Sequence[PlayerFlight], numbers: Numbers) -> List[Dict[
 
 
 _ROTORS = "Rotor speed (rad/s)"
-_PANELS = ("Tracking error (m)", "Height (m)", "Attitude (deg)", _ROTORS, "Wind speed (m/s)")
+_PANELS = {
+    "Tracking error (m)": 1e-7,
+    "Height (m)": 1e-3,
+    "Attitude (deg)": 1e-3,
+    _ROTORS: 1e-2,
+    "Wind speed (m/s)": 1e-2,
+}
+"""Plots in their order, and the range below which a curve is a flat line."""
 
 
 def _list_curves(log: Trajectory) -> List[Tuple[str, str, np.ndarray]]:

@@ -6,6 +6,9 @@ import re
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
+import numpy as np
+
+from ...model.visuals import read_vehicle
 from ...report.decimation import pick_evenly
 from ..output_folder import remove_listed_files
 from ..table import (
@@ -79,7 +82,8 @@ def write(
     images = _draw_plots(comparison, plan) if plots else {}
     written += save_files(folder, {f"{name}.png": data for name, data in images.items()})
     page = folder / "report.html"
-    write_page(page, "compare.html", **_page_values(comparison, plan, flight, images))
+    values = _page_values(comparison, plan, flight, images)
+    write_page(page, "compare.html", **values, player=_make_player(comparison, plan, plots))
     return [*written, page]
 
 
@@ -102,6 +106,19 @@ def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
         return {}
     figures = plots.draw(curves, against.log, against.label)
     return {name: png(figure) for name, figure in figures.items()}
+
+
+def _make_player(comparison: Comparison, plan: Plan, plots: bool) -> str:
+    """Make an animation of the flights that are drawn; empty without any."""
+    from ...report.player import PlayerFlight, make_section
+
+    vehicles = [read_vehicle(model) for model in plan.variation.models] if plots else []
+    shown = [
+        PlayerFlight(plan.make_label(variant), log, vehicles[variant.model])
+        for log, variant in zip(comparison.logs, plan)
+        if plots and log is not None and len(log)
+    ]
+    return make_section(shown) if shown else ""
 
 
 def _table_rows(comparison: Comparison) -> Iterable[Sequence[Any]]:
@@ -159,6 +176,7 @@ def _page_values(
     return {
         "title": "Comparison of flights",
         "summary": summarise(comparison),
+        "verdict": _describe_largest(comparison, plan),
         "flight": flight,
         "differences": comparison.differences,
         "first": plan.models[0],
@@ -179,6 +197,23 @@ def _page_values(
         "rows": rows,
         "more": max(0, len(plan) - _ROWS_OF_PAGE),
     }
+
+
+def _describe_largest(comparison: Comparison, plan: Plan) -> str:
+    """Name the flight that differs most in position from the baseline."""
+    state = next(iter(comparison.states))
+    values = comparison.table[f"max_{state}"].astype(float)
+    if comparison.against is None or not np.isfinite(values).any():
+        return "No flight succeeded."
+    row = int(np.nanargmax(np.where(np.isfinite(values), values, np.nan)))
+    if values[row] == 0:
+        return "All flights are bit-identical."
+    unit, factor = choose_display_unit(comparison.states[state])
+    label = next(plan.make_label(variant) for i, variant in enumerate(plan) if i == row)
+    size = format_number(values[row] * factor)
+    return (
+        f"{label} differs most from no. {comparison.against + 1}: {state} by up to {size} {unit}."
+    )
 
 
 def _group_states(states: Sequence[str]) -> List[Tuple[str, Sequence[str]]]:

@@ -24,6 +24,7 @@ from .best_controllers import describe_seeds
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
 from .margins import BOX, ENDS, format_margin
+from .overview import describe_best, make_overview
 from .paper_tables import make_latex, make_rows
 from .plan import Plan
 from .plots import draw, group_flights, is_plot, make_label, name_group
@@ -259,6 +260,8 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
     return {
         "title": "Evaluation of controllers",
         "summary": summarise(evaluation),
+        "verdicts": describe_best(evaluation.groups),
+        "overview": make_overview(evaluation.groups),
         "flight": format_settings(plan.describe()),
         "shown": choose_columns(lines),
         "lines": lines[:ROWS_OF_PAGE],

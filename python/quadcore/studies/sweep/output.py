@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         summary=count_rows(plan, columns),
         flight=format_settings(plan.describe(), 20),
         lines=[_format(row) for row in summarise_rows(plan, columns)],
-        sensitivities=[_format(row) for row in found if row["measure"] == measure],
+        sensitivities=_drop_repeated([_format(row) for row in found if row["measure"] == measure]),
         measure=measure,
         worst=[_format(row) for row in list_worst(plan, columns, measure)],
         meanings=plan.meanings,
@@ -134,6 +134,16 @@ def list_worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, 
         }
         for i in [*failed, *largest]
     ]
+
+
+def _drop_repeated(rows: Sequence[Dict[str, str]]) -> List[Dict[str, str]]:
+    """Leave out what has the same value in all rows, before the parameter that a row is about."""
+    if not rows:
+        return []
+    names = list(rows[0])
+    context = names[: names.index("axis")]
+    same = {name for name in context if len({row[name] for row in rows}) == 1}
+    return [{name: text for name, text in row.items() if name not in same} for row in rows]
 
 
 def _format(row: Mapping[str, Any]) -> Dict[str, str]:
