@@ -61,7 +61,7 @@ def walled(tmp_path):
 
 
 def test_a_course_is_evaluated_with_clearance_and_collisions():
-    evaluation = qc.evaluate("geometric", "eight", world="slalom", duration=6, engine="eigen")
+    evaluation = qc.evaluate("geometric", "eight", world="slalom", duration=6, engine="ode")
     (row,) = evaluation.table
     # The path is 0.65 m or more from the axes of the poles, whose radius is 0.1 m.
     assert 0.1 < row["clearance"] < 0.55
