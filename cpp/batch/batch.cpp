@@ -44,6 +44,11 @@ class Batch::Implementation {
   Implementation(std::vector<BatchVehicle> vehicles, const World& world,
                  const SimulationOptions& options, unsigned threads)
       : common_(world, options), threads_(threads) {
+    if (world.start_time != 0) {
+      throw InputError(
+          "a batch cannot start at the time of a saved world. Remove <state> from the world, or "
+          "simulate each vehicle alone.");
+    }
     batch::Crew crew = batch::make_crew(std::move(vehicles), common_);
     members_ = std::move(crew.members);
     steps_.resize(size());

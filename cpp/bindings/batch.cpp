@@ -124,6 +124,14 @@ py::list arrays(const std::vector<BatchGuided>& guided, std::vector<double> Batc
   return list;
 }
 
+/// Return the number of logged rows, the first of which is the start.
+py::ssize_t count_rows(std::int64_t steps, std::int64_t log_every) {
+  if (steps < 0 || log_every < 1) {
+    throw InputError("steps or log_every is out of range. Give steps >= 0 and log_every >= 1.");
+  }
+  return static_cast<py::ssize_t>(steps / log_every + 1);
+}
+
 /// Fly all vehicles under built-in controllers; returns logs, numbers of rows, calls and saturated
 /// calls, and for each flight the variation of rates and commands and the durations of some calls.
 py::tuple follow(GuardedBatch& self, const std::vector<BoundController*>& controllers,
@@ -136,7 +144,10 @@ py::tuple follow(GuardedBatch& self, const std::vector<BoundController*>& contro
   if (controllers.size() != n || references.size() != n) {
     throw InputError("there are not as many controllers and references as vehicles.");
   }
-  const auto rows = static_cast<py::ssize_t>(steps / log_every + 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!controllers[i] || !references[i]) throw InputError("a controller or reference is None.");
+  }
+  const py::ssize_t rows = count_rows(steps, log_every);
   const auto columns = static_cast<py::ssize_t>(1 + (13 + self.batch.state_width()) / 2);
   py::array_t<double> logs({static_cast<py::ssize_t>(logged.size()), rows, columns});
   std::vector<BatchGuide> guides;
@@ -170,7 +181,7 @@ py::tuple follow_together(GuardedBatch& self, const py::function& function, doub
                           double delay, const std::string& odometry, std::int64_t steps,
                           std::int64_t log_every) {
   const auto n = static_cast<py::ssize_t>(self.batch.size());
-  const auto rows = static_cast<py::ssize_t>(steps / log_every + 1);
+  const py::ssize_t rows = count_rows(steps, log_every);
   const auto columns = static_cast<py::ssize_t>(1 + (13 + self.batch.state_width()) / 2);
   py::array_t<double> logs({n, rows, columns});
   std::vector<BatchGuided> guided(self.batch.size());

@@ -120,3 +120,15 @@ TEST_CASE("the distance of random shapes agrees with that of sampled points") {
     CHECK(found >= sampled - size.maxCoeff() / n);
   }
 }
+
+TEST_CASE("an edge that touches a nearly parallel face is found") {
+  const Vector3d half(0.25, 0.25, 0.05);
+  const Model box = vehicle_of(collision_of(ShapeKind::box, 2 * half));
+  const World slab = world_of(ObstacleKind::box, {1, 1, 0.2}, {0, 0, 0});
+  for (const double tilt : {1e-3, 5e-3, 0.01, 0.03, 0.05}) {
+    const double drop = half.x() * std::sin(tilt) + half.z() * std::cos(tilt);
+    const Quaterniond q(Eigen::AngleAxisd(tilt, Vector3d::UnitY()));
+    CHECK(distance(box, slab, {0, 0, 0.1 + drop - 5e-4}, q) < 1e-5);  // 0.5 mm inside
+    CHECK(distance(box, slab, {0, 0, 0.1 + drop + 5e-4}, q) == doctest::Approx(5e-4).epsilon(0.01));
+  }
+}

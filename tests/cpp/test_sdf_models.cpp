@@ -307,3 +307,29 @@ TEST_CASE("ten thousand obstacles are read") {
   for (int i = 0; i < 10000; ++i) inside += box_model("b" + std::to_string(i), "1 0 0 0 0 0");
   CHECK(read_inside(inside).models.obstacles.size() == 10000);
 }
+
+TEST_CASE("a model that includes itself, on disk or in the document, is one line") {
+  const std::string inner =
+      "<model name='a'><static>1</static><include><uri>u</uri></include></model>";
+  const std::string world = "<include><uri>u</uri><sdf version='1.6'>" + inner + "</sdf></include>";
+  CHECK(has(refusal_inside(world), "'u' includes itself. Remove the <include>."));
+}
+
+TEST_CASE("a model that one include embeds serves the others, though that one is ignored") {
+  const std::string embedded = "<sdf version='1.6'>" + box_model("box", "0 0 1 0 0 0") + "</sdf>";
+  const std::string world = "<include><uri>u</uri><name>first</name>" + embedded +
+                            "</include><include><uri>u</uri><name>second</name></include>";
+  const auto read = read_inside(world, "1.6", {"first"}).models;
+  REQUIRE(read.obstacles.size() == 1);
+  CHECK(read.obstacles[0].model == "second");
+  CHECK(read.ignored == std::vector<std::string>{"first"});
+}
+
+TEST_CASE("a contact without stiffness and damping, and a time beyond all clocks, are refused") {
+  const std::string soft = "<surface><contact><ode><kp>0</kp><kd>0</kd></ode></contact></surface>";
+  CHECK(has(refusal_inside("<model name='m'><static>1</static><link name='l'>" +
+                           collision("<box><size>1 2 3</size></box>", soft) + "</link></model>"),
+            "<kp> and <kd> are both 0."));
+  CHECK(has(refusal_inside("<state world_name='w'><sim_time>0 1e300</sim_time></state>"),
+            "Write seconds and nanoseconds."));
+}

@@ -64,7 +64,7 @@ def test_list_has_the_parameters_of_controllers(capsys):
 
 def test_info_without_a_model_lists_the_models(capsys):
     assert printed(capsys, "info") == printed(capsys, "list", "models")
-    assert "--set needs a MODEL" in refusal(capsys, "info", "--set", "frame.mass=1")
+    assert "--set requires a MODEL. Name one." in refusal(capsys, "info", "--set", "frame.mass=1")
 
 
 def test_info_as_json_holds_what_the_simulation_has(capsys):

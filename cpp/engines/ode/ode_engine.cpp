@@ -67,6 +67,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   for (const Hinge& hinge : hinges) rubs_ |= hinge.friction > 0;
   if (world.ground_plane || !world.obstacles.empty()) {
     contact_ = std::make_unique<WorldContact>(bodies_.model, bodies, world);
+    gazebo_step_->reserve(contact_->most_on_ground());
     if (rubs_) vehicle_->report_hinge_forces();
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {

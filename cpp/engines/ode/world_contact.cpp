@@ -145,6 +145,16 @@ WorldContact::WorldContact(const Model& model, const std::vector<dBodyID>& bodie
       add_shape(collision, model, i, bodies);
     }
   }
+  contacts_.reserve(most_on_ground());
+}
+
+std::size_t WorldContact::most_on_ground() const {
+  std::size_t most = 0;
+  for (const Shape& shape : shapes_) {
+    most += static_cast<std::size_t>(
+        std::min({shape.surface.max_contacts, max_contacts_, most_points}));
+  }
+  return most;
 }
 
 void WorldContact::add_obstacle(const Obstacle& obstacle) {

@@ -27,7 +27,9 @@ class WorldContact {
   /// Throws InputError for a shape without contact model (a mesh).
   WorldContact(const Model& model, const std::vector<dBodyID>& bodies, const World& world);
 
-  /// Of each shape.
+  /// Return the maximum number of points with the ground alone.
+  std::size_t most_on_ground() const;
+  /// Return the reach of each shape.
   const std::vector<Reach>& reaches() const { return reaches_; }
   /// Return whether there is a ground plane.
   bool has_ground() const { return has_ground_; }

@@ -23,7 +23,9 @@ class TachometerPlugin final : public Plugin {
 
   void prepare(const VehicleDescription& vehicle) override {
     for (std::size_t i = 0; i < rotors_.size(); ++i) {
-      speed_per_rate_[i] = 1 / vehicle.rotors[rotors_[i]].rate_per_command;
+      const double rate_per_command = vehicle.rotors[rotors_[i]].rate_per_command;
+      // A motor that ignores its command has no commanded speed: the joint rate stands for it.
+      speed_per_rate_[i] = rate_per_command == 0 ? 1 : 1 / rate_per_command;
     }
   }
 

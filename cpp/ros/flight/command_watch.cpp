@@ -7,6 +7,7 @@ namespace quadcore::node {
 void CommandWatch::arrived(double time) {
   if (stopped_) restart();
   is_late_ = false;
+  if (!arrivals_.empty() && arrivals_.back() == time) return;  // during a pause, for example
   arrivals_.push_back(time);
   if (arrivals_.size() > most_arrivals) arrivals_.pop_front();
 }

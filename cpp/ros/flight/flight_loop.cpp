@@ -220,7 +220,9 @@ void FlightThread::take_step() {
   ++report_.steps;
   if (steps_allowed_ > 0) --steps_allowed_;
   if (steps_allowed_ == 0) changed_.notify_all();
-  if (settings_.lockstep || !command_watch_.check(report_.time)) return;
+  // Without a limit of the pace, simulated time says nothing about a controller.
+  const bool has_pace = settings_.follows_clock || real_time_factor_ > 0;
+  if (settings_.lockstep || !has_pace || !command_watch_.check(report_.time)) return;
   char text[120];
   std::snprintf(text, sizeof text,
                 "no command since t = %g s: the controller has stopped. Its last command is kept.",

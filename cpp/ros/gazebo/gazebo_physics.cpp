@@ -18,7 +18,7 @@ gazebo_msgs::ODEPhysics describe_solver(const World& world) {
   solver.contact_max_correcting_vel = world.contact_max_correcting_vel;
   // The values of Gazebo 11, which the engine gazebo11 repeats.
   solver.contact_surface_layer = 0.001;
-  solver.max_contacts = 20;
+  solver.max_contacts = static_cast<std::uint32_t>(world.max_contacts);
   return solver;
 }
 

@@ -89,7 +89,7 @@ def play_logs(arguments: argparse.Namespace) -> None:
     _check_output(arguments.out, (".html", ".htm"), "a page")
     _check_output(arguments.gif, (".gif",), "a GIF")
     flights = [
-        PlayerFlight(name, Log.of_file(log), find_vehicle(log, arguments.model))
+        PlayerFlight(name, Log.of_file(log, arguments.mapping), find_vehicle(log, arguments.model))
         for name, log in zip(names, logs)
     ]
     page = make_page(flights, ", ".join(names), find_world(logs), arguments.camera)

@@ -117,3 +117,17 @@ TEST_CASE("a schedule that is updated at its events only asks and arrives as at 
     }
   }
 }
+
+TEST_CASE("the next call is that of a search step by step, at once for slow rates, too") {
+  const double dt = 1e-3;
+  for (const double rate : {0.3, 7.0, 333.3, 500.0, 1000.0, 2500.0, 1e9}) {
+    const Schedule schedule(rate, 0, 1);
+    const auto count = [&](double step) { return std::floor(step * (rate * dt) + 1e-6) + 1; };
+    for (double step = 0; step < 5000; step += 37) {
+      double next = step + 1;
+      while (count(next) == count(step)) next += 1;
+      CHECK(schedule.next_call(step, dt) == next);
+    }
+  }
+  CHECK(Schedule(1e-6, 0, 1).next_call(0, 1e-6) == doctest::Approx(1e12));
+}

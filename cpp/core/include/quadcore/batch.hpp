@@ -28,9 +28,9 @@ class ReferenceShape;
 /// Controller of a vehicle of a batch, and what it follows. Both may serve several vehicles and
 /// must exist while the vehicles follow.
 struct BatchGuide {
-  const control::Controller* controller;
-  const control::ReferenceShape* reference;
-  double rate;   ///< calls per simulated second
+  const control::Controller* controller;     ///< not null
+  const control::ReferenceShape* reference;  ///< not null
+  double rate;                               ///< calls per simulated second
   double delay;  ///< from a call to the step at which its command acts [s]
 };
 

@@ -14,6 +14,7 @@ namespace quadcore QUADCORE_EXPORT {
 /// is no obstacle. A shape on a rotor counts as the cylinder that it sweeps.
 class Clearance {
  public:
+  /// Copies the shapes of both. Collision meshes are left out.
   Clearance(const Model& model, const World& world);
 
   /// The nearest obstacle.

@@ -51,7 +51,10 @@ struct VectorErrors {
 struct OdometryErrors {
   static constexpr std::size_t biases = 12;  ///< number of biases
 
-  VectorErrors position, orientation, linear_velocity, angular_velocity;
+  VectorErrors position;          ///< m
+  VectorErrors orientation;       ///< rad
+  VectorErrors linear_velocity;   ///< m/s
+  VectorErrors angular_velocity;  ///< rad/s
 
   /// Return whether measurements are exact.
   bool is_none() const {

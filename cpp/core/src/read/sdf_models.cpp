@@ -1,5 +1,6 @@
 #include "sdf_models.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -44,7 +45,9 @@ class ModelReader {
       : xml_(xml),
         world_(world),
         saved_(read_saved_state(xml, world)),
-        world_frames_(xml, world, !is_at_most_sdf(xml, world, 6)) {}
+        world_frames_(xml, world, !is_at_most_sdf(xml, world, 6)) {
+    collect_files(xml.root());
+  }
 
   WorldModels read() {
     found_.start_time = saved_.time;
@@ -54,6 +57,16 @@ class ModelReader {
   }
 
  private:
+  /// Collect the models that are embedded in an `<include>`; others of the same URI share them.
+  void collect_files(const Element& parent) {
+    for (const Element* e = parent.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      const Element* sdf = e->FirstChildElement("sdf");
+      const Element* uri = e->FirstChildElement("uri");
+      if (e->Name() == std::string("include") && sdf && uri) files_.emplace(xml_.text(*uri), sdf);
+      collect_files(*e);
+    }
+  }
+
   void read_items(const Element& parent) {
     for (const Element* e = parent.FirstChildElement(); e; e = e->NextSiblingElement()) {
       const std::string kind = e->Name();
@@ -74,10 +87,10 @@ class ModelReader {
     }
     const Element* sdf = xml_.child(include, "sdf");
     const Xml* xml = &xml_;
+    const auto file = files_.find(uri);
+    if (!sdf && file != files_.end()) sdf = file->second;
     if (sdf) {
-      files_.emplace(uri, sdf);
-    } else if (const auto file = files_.find(uri); file != files_.end()) {
-      sdf = file->second;
+      // A model in the same document.
     } else if (const std::string text = find_builtin_model(uri); !text.empty()) {
       xml = &open_builtin(uri, text);
       sdf = &xml->root();
@@ -88,7 +101,16 @@ class ModelReader {
                     suggest_ignoring(uri));
     }
     const Element* model = xml->child(*sdf, "model");
-    if (model) return read({xml, model, &include});
+    if (model) {
+      if (std::find(open_.begin(), open_.end(), sdf) != open_.end()) {
+        xml_.fail(include,
+                  "'" + uri + "' includes itself. Remove the <include>." + suggest_ignoring(uri));
+      }
+      open_.push_back(sdf);
+      read({xml, model, &include});
+      open_.pop_back();
+      return;
+    }
     if (xml->child(*sdf, "light") || xml->child(*sdf, "actor")) return;
     xml_.fail(include,
               "'" + uri + "' contains no <model>. Correct its file." + suggest_ignoring(uri));
@@ -151,6 +173,9 @@ class ModelReader {
                   Placement X_WM, bool is_parent_static, const SavedModel& saved) {
     const Xml& xml = *given.xml;
     const Element& model = *given.model;
+    if (++count_ > most_models) {
+      xml.fail(model, "the world has more than 100000 models. Use a smaller world.");
+    }
     const Element* fixed = overriding(given, "static");
     const bool is_static = fixed ? is_true(*fixed) : is_parent_static;
     const SdfFrames frames(xml, model, !is_at_most_sdf(xml, model, 6));
@@ -239,7 +264,11 @@ class ModelReader {
   SdfFrames world_frames_;
   WorldModels found_;
   std::set<std::string> names_;
+  static constexpr std::size_t most_models = 100000;  ///< nested includes may multiply
+
   std::map<std::string, const Element*> files_;  ///< embedded `<sdf>` by URI
+  std::vector<const Element*> open_;             ///< those that are being read
+  std::size_t count_ = 0;                        ///< models read
   std::vector<std::unique_ptr<Document>> documents_;
   std::vector<std::unique_ptr<Xml>> builtins_;
 };

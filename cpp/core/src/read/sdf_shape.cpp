@@ -50,6 +50,9 @@ Surface read_static_surface(const Xml& xml, const Element& collision) {
   const Element* contact = descend(&collision, {"surface", "contact", "ode"});
   surface.kp = coefficient_or(xml, contact, "kp", surface.kp);
   surface.kd = coefficient_or(xml, contact, "kd", surface.kd);
+  if (surface.kp == 0 && surface.kd == 0) {
+    xml.fail(*contact, "<kp> and <kd> are both 0. Write a positive number for one of them.");
+  }
   const double points = number_or(xml, &collision, "max_contacts", surface.max_contacts);
   surface.max_contacts = static_cast<int>(std::min(std::max(points, 0.0), 1e6));
   return surface;

@@ -38,7 +38,8 @@ double read_time(const Xml& xml, const Element& time) {
   if (words.empty()) return 0;
   const auto whole = parse_number(words[0]);
   const auto nano = words.size() == 2 ? parse_number(words[1]) : std::optional<double>(0);
-  if (words.size() > 2 || !whole || !nano || *whole < 0 || *nano < 0 || *whole > 1e9) {
+  if (words.size() > 2 || !whole || !nano || *whole < 0 || *nano < 0 || *whole > 1e9 ||
+      *nano >= 1e9) {
     xml.fail(time, "<sim_time> is '" + xml.text(time) + "'. Write seconds and nanoseconds.");
   }
   return *whole + *nano * 1e-9;

@@ -25,16 +25,19 @@ Numbers numbers(const Pose& pose) {
   return {p[0], p[1], p[2], r[0], r[1], r[2]};
 }
 
-void add_shape(Facts& facts, const std::string& who, const Collision& shape) {
-  const Surface& s = shape.surface;
-  add(facts, who + " kind of shape", {static_cast<double>(shape.kind)});
-  add(facts, who + " size", numbers(shape.size));
-  add(facts, who + " place of the shape", numbers(shape.pose));
+void add_surface(Facts& facts, const std::string& who, const Surface& s) {
   add(facts, who + " mu1, mu2", {s.mu1, s.mu2});
   add(facts, who + " fdir1", numbers(s.fdir1));
   add(facts, who + " kp, kd", {s.kp, s.kd});
   add(facts, who + " minDepth, maxVel, maxContacts",
       {s.min_depth, s.max_vel, static_cast<double>(s.max_contacts)});
+}
+
+void add_shape(Facts& facts, const std::string& who, const Collision& shape) {
+  add(facts, who + " kind of shape", {static_cast<double>(shape.kind)});
+  add(facts, who + " size", numbers(shape.size));
+  add(facts, who + " place of the shape", numbers(shape.pose));
+  add_surface(facts, who, shape.surface);
 }
 
 Facts facts_of(const Model& model) {
@@ -73,12 +76,16 @@ Facts facts_of(const World& world) {
   add(facts, "atmosphere", {air.temperature, air.temperature_gradient, air.pressure});
   add(facts, "magnetic field", numbers(world.magnetic_field_W));
   add(facts, "ground plane", {world.ground_plane ? 1.0 : 0.0});
+  if (world.ground_plane) add_surface(facts, "ground plane", world.ground);
+  add(facts, "max_contacts", {static_cast<double>(world.max_contacts)});
   for (const Obstacle& obstacle : world.obstacles) {
     const std::string who = "obstacle " + obstacle.model + "::" + obstacle.name;
     add(facts, who + " kind", {static_cast<double>(obstacle.kind)});
     add(facts, who + " size", numbers(obstacle.size));
     add(facts, who + " position", numbers(obstacle.position_W));
     add(facts, who + " orientation", numbers(obstacle.orientation_W.toRotationMatrix()));
+    add_surface(facts, who, obstacle.surface);
+    add(facts, who + " slip1, slip2", {obstacle.slip1, obstacle.slip2});
   }
   facts.push_back({"solver", {}, world.solver_type});
   add(facts, "iters", {static_cast<double>(world.solver_iterations)});

@@ -40,10 +40,10 @@ Vector3d project(const Convex& shape, const Vector3d& point) {
   return shape.position + shape.rotation * p;
 }
 
-/// Return the distance of two convex shapes by alternating projections, which converge to the
-/// nearest points of two convex sets (Cheney, Goldstein 1959).
-double distance_between(const Convex& a, const Convex& b) {
-  Vector3d p = a.position;
+/// Return the distance of two convex shapes by alternating projections from a point, which converge
+/// to the nearest points of two convex sets (Cheney, Goldstein 1959). Between faces that are nearly
+/// parallel they converge slowly; the distance is then an upper bound.
+double distance_from(Vector3d p, const Convex& a, const Convex& b) {
   double distance = INFINITY;
   for (int i = 0; i < most_projections; ++i) {
     const Vector3d q = project(b, p);
@@ -52,6 +52,36 @@ double distance_between(const Convex& a, const Convex& b) {
     if (distance - shorter < least_progress) return shorter;
     distance = shorter;
   }
+  return distance;
+}
+
+/// Return points of a shape's surface that lie furthest out: the corners of a box, and eight points
+/// of each rim of a cylinder.
+std::vector<Vector3d> outer_points(const Convex& shape) {
+  std::vector<Vector3d> points;
+  const auto add = [&](const Vector3d& p) {
+    points.push_back(shape.position + shape.rotation * p);
+  };
+  if (shape.kind == ShapeKind::box) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3d signs(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+      add(signs.cwiseProduct(shape.size) / 2);
+    }
+  } else if (shape.kind == ShapeKind::cylinder) {
+    for (int i = 0; i < 16; ++i) {
+      const double angle = M_PI / 4 * (i / 2), z = (i % 2 == 0 ? 0.5 : -0.5) * shape.size.y();
+      add({shape.size.x() * std::cos(angle), shape.size.x() * std::sin(angle), z});
+    }
+  }
+  return points;
+}
+
+/// Return the distance of two convex shapes: the shortest from their centres and outer points, so
+/// that an edge or a corner that touches a nearly parallel face is found.
+double distance_between(const Convex& a, const Convex& b) {
+  double distance = distance_from(a.position, a, b);
+  for (const Vector3d& p : outer_points(a)) distance = std::min(distance, distance_from(p, a, b));
+  for (const Vector3d& p : outer_points(b)) distance = std::min(distance, distance_from(p, b, a));
   return distance;
 }
 

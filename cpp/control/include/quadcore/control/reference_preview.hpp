@@ -29,7 +29,7 @@ class ReferencePreview {
 
   /// \param controller  copied as far as needed
   explicit ReferencePreview(const Controller& controller);
-  ReferencePreview(ReferencePreview&&) noexcept;
+  ReferencePreview(ReferencePreview&&) noexcept;  ///< takes over the points that are computed
   ~ReferencePreview();
 
   /// Return the point at the time of the present call.

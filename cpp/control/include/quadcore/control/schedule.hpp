@@ -56,9 +56,11 @@ class Schedule {
   /// Return the step of the first call after a step.
   double next_call(double step, double dt) const {
     const double due = count_due(step, dt);
-    do step += 1;
-    while (count_due(step, dt) == due);
-    return step;
+    // Rounding may put the quotient next to the right step, not further away.
+    double next = std::max(step + 1, std::floor((due - rounding) / (rate_ * dt)) - 1);
+    while (next > step + 1 && count_due(next, dt) != due) next -= 1;
+    while (count_due(next, dt) == due) next += 1;
+    return next;
   }
 
   /// Return the first step after an updated one at which a call is due or a command takes effect.

@@ -11,6 +11,7 @@ namespace quadcore::control {
 /// Sums the changes of the magnitudes of some numbers, their total variation.
 class TotalVariation {
  public:
+  /// \param count  how many numbers
   explicit TotalVariation(std::size_t count) : last_(count), sums_(count) {}
 
   /// Add the next values of the numbers.

@@ -23,9 +23,9 @@ struct Obstacle {
   Vector3d position_W = Vector3d::Zero();               ///< m
   Quaterniond orientation_W = Quaterniond::Identity();  ///< axes of the shape in the world
   Surface surface = {};  ///< contact parameters; max_vel and min_depth have no effect
-  double slip1 = 0,
-         slip2 = 0;   ///< sliding speed per friction force along and across fdir1 [m/(N s)]
-  std::string where;  ///< FILE:LINE
+  double slip1 = 0;      ///< sliding speed per friction force along fdir1 [m/(N s)]
+  double slip2 = 0;      ///< sliding speed per friction force across fdir1 [m/(N s)]
+  std::string where;     ///< FILE:LINE
 };
 
 /// Return the signed distance of a point from an obstacle's surface, negative inside [m].
