@@ -102,8 +102,8 @@ void bind_documents(py::module_& m) {
 
 Attributes
 ----------
-largest : int
-    Bytes that a text may have.
+largest, largest_world : int
+    Bytes that a text may have, and the text of a world.
 most_levels, most_attributes : int
     Levels of elements that a text may have, and attributes of one element.)")
       .def(py::init([](std::string name, std::string text,

@@ -273,7 +273,7 @@ def test_a_long_value_is_shortened_in_what_is_said_of_it():
         qc.Simulation("quadrotor", parameters=np.arange(10000.0).reshape(-1, 10))
     told = str(refusal.value)
     assert told.startswith("parameters is array([[") and len(told) < 250 and "\n" not in told
-    assert told.endswith("Give a mapping of names to values")
+    assert told.endswith("Give a mapping of names to values.")
 
 
 def test_an_option_that_there_is_not_is_refused_with_the_nearest():

@@ -100,9 +100,9 @@ def test_their_errors_have_their_deviations_and_correlation(name, topic, fields,
         assert np.allclose(correlation, math.exp(-lag / 10 / T_c), rtol=0, atol=0.1)
 
 
-def test_a_field_beside_another_is_refused(tmp_path):
-    element = "<magnetic_field>1 0 0</magnetic_field>"
-    with pytest.raises(
-        qc.InputError, match="<magnetic_field> sets the same value as <magnetic_field>"
-    ):
-        in_world(tmp_path, mounted("imu", {}), f"{element}<physics>{element}</physics>")
+def test_the_field_of_the_world_wins_over_that_of_its_physics(tmp_path):
+    """As in Gazebo 11, whatever the order."""
+    own, other = (f"<magnetic_field>{b} 0 0</magnetic_field>" for b in (1, 2))
+    for world in (f"{own}<physics>{other}</physics>", f"<physics>{other}</physics>{own}"):
+        simulation = in_world(tmp_path, mounted("imu", {}), world)
+        assert simulation.world.magnetic_field.tolist() == [1, 0, 0]

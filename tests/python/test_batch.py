@@ -248,7 +248,7 @@ def test_the_state_is_written_into_the_callers_array():
             "3 values",
         ),
         (lambda: BatchSimulation(n=2, spawn=np.zeros((3, 6))), "poses of 2 vehicles"),
-        (lambda: BatchSimulation(n=2, seed=[1, 2, 3]), "no 2 whole numbers"),
+        (lambda: BatchSimulation(n=2, seed=[1, 2, 3]), "does not contain 2 whole numbers"),
         (
             lambda: BatchSimulation(n=2).step(np.zeros((2, 3))),
             r"commands has the shape \(2, 3\). Give an array of shape \(2, 4\)",

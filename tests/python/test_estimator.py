@@ -104,4 +104,4 @@ def test_it_is_one_more_row_of_an_evaluation(here, tmp_path):
 def test_without_sensors_it_says_what_it_needs(here, capsys):
     arguments = ["quadrotor", "--controller", "estimated:Geometric", "--engine", "eigen"]
     assert main(["run", *arguments, "--duration", "1", "--quiet"]) == 2
-    assert "add libimu_plugin.so, or use --scenario sensors.yaml" in capsys.readouterr().err
+    assert "Add libimu_plugin.so, or use --scenario sensors.yaml" in capsys.readouterr().err

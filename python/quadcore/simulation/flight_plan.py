@@ -247,7 +247,13 @@ class FlightPlan:
         return simulation
 
     def find_start(self, simulation: Simulation) -> Optional[State]:
-        """Return the state on the reference in which a simulation of this plan begins, if any."""
+        """Return the state on the reference in which a simulation of this plan begins, if any.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Simulation of this plan.
+        """
         if not self.on_reference or self.reference is None:
             return None
         spins = self.controller.spins if isinstance(self.controller, BuiltInController) else ()
