@@ -398,7 +398,7 @@ def test_the_command_line_writes_one(tmp_path):
     variables = fmpy.read_model_description(str(path)).modelVariables
     assert [v.start for v in variables if v.name == "odometry.rate"] == ["100"]
     assert "Name a file that ends in .fmu" in refused("export-fmu", "quadrotor", "-o", "x.zip")
-    assert "no shipped model" in refused("export-fmu", "nothing", "-o", str(tmp_path / "y.fmu"))
+    assert "nor a shipped model" in refused("export-fmu", "nothing", "-o", str(tmp_path / "y.fmu"))
     assert not (tmp_path / "y.fmu").exists()
 
 

@@ -128,7 +128,7 @@ def test_a_law_of_a_file_flies_at_its_rate(tmp_path):
 
 def test_gains_of_another_vehicle_are_warned_of(tmp_path):
     path = written(tmp_path, "law: geometric\nvehicle: hexarotor\n")
-    with pytest.warns(qc.QuadcoreWarning, match="for 'hexarotor', but 'quadrotor' flies"):
+    with pytest.warns(qc.QuadcoreWarning, match="for 'hexarotor', but 'quadrotor' uses them"):
         controllers.parse(str(path), "quadrotor")
     with warnings.catch_warnings():
         warnings.simplefilter("error")

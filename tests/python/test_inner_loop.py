@@ -195,5 +195,5 @@ def test_a_torque_and_a_thrust_are_those_of_the_commanded_speeds(model):
 
 
 def test_a_torque_of_two_numbers_is_refused():
-    with pytest.raises(qc.InputError, match=r"its torque is .* give 3 finite numbers"):
+    with pytest.raises(qc.InputError, match=r"its torque is .* Give 3 finite numbers"):
         flown("eigen", qc.WrenchThrust([1, 2], WEIGHT), 0.1)

@@ -133,7 +133,8 @@ def fit_model(arguments: argparse.Namespace) -> None:
     if arguments.free == [DAMAGE]:
         fit_damage(arguments, out)
         return
-    if len(arguments.log) > 1 or arguments.judge or is_recording(Path(arguments.log[0])):
+    is_real = arguments.mapping is not None or is_recording(Path(arguments.log[0]))
+    if len(arguments.log) > 1 or arguments.judge or is_real:
         fit_real_flights(arguments, out, _read_all_bounds(arguments))
         return
     shared = reading.read_model_arguments(arguments)

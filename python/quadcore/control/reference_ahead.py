@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Tuple
 
 import numpy as np
 
@@ -75,14 +75,25 @@ def sample_function(function: Callable[[float], Any], times: Any) -> Any:
 
 
 class ReferenceWithFuture:
-    """Value of a user-defined reference, with ``at``; other attributes are those of the value."""
+    """Value of a user-defined reference, with ``at``; everything else is that of the value."""
 
     def __init__(self, value: Any, at: Callable[[Any], Any]) -> None:
         self._value = value
         self.at = at
 
     def __getattr__(self, name: str) -> Any:
+        if name == "_value" or name.startswith("__"):  # copy and pickle ask before it is set
+            raise AttributeError(name)
         return getattr(self._value, name)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self._value[index]
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self._value)
+
+    def __len__(self) -> int:
+        return len(self._value)
 
     def __repr__(self) -> str:
         return repr(self._value)

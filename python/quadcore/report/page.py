@@ -16,6 +16,7 @@ from .run_record import describe_command
 
 _FOLDER = Path(__file__).parent
 _BUNDLE = _FOLDER / "bundle"  # scripts/bundle_player writes it
+_PARTS = ("player.js", "player.css", "LICENSE.player")
 _PLAYER = '<section class="quadcore-player"'
 
 
@@ -57,15 +58,12 @@ def render(template: str, **values: object) -> str:
 
 def has_player() -> bool:
     """Return whether this build of the package contains the script of the player."""
-    return is_file(_BUNDLE / "player.js")
+    return all(is_file(_BUNDLE / name) for name in _PARTS)
 
 
 def _add_player(page: str) -> str:
     """Add the script, the style and the licences of the player, once for all players of a page."""
-    script, style, licences = (
-        (_BUNDLE / name).read_text(encoding="utf-8")
-        for name in ("player.js", "player.css", "LICENSE.player")
-    )
+    script, style, licences = ((_BUNDLE / name).read_text(encoding="utf-8") for name in _PARTS)
     end = render("player_script.html", script=compress(script.encode()), licences=licences)
     head, _, body = page.partition("</head>")
     body, _, rest = body.rpartition("</body>")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import List, Optional, Sequence
 
 import numpy as np
@@ -74,7 +75,7 @@ class LiveView:
 
 
 def make_rows(table: np.ndarray, columns: Sequence[str]) -> List[List[Optional[float]]]:
-    """Return rows of a log with the columns that the page reads, None instead of NaN."""
+    """Return rows of a log with the columns that the page reads, None if not finite."""
     shown = list_columns(Log.of_rows(table, columns, {}))
     rows = np.hstack([values for values, _ in shown.values()]).tolist()
-    return [[None if value != value else value for value in row] for row in rows]
+    return [[value if math.isfinite(value) else None for value in row] for row in rows]

@@ -27,7 +27,7 @@ def make_overview(groups: Sequence[Mapping[str, Any]]) -> Overview:
     controllers = list(dict.fromkeys(str(group["controller"]) for group in groups))
     cells: Dict[Tuple[str, ...], Dict[str, Tuple[str, bool]]] = {}
     for group in groups:
-        error = "failed" if group["failure_rate"] > 0 else format_error(group["mean_rms_position"])
+        error = _describe_failures(group) or format_error(group["mean_rms_position"])
         cell = cells.setdefault(tuple(str(group[name]) for name in names), {})
         cell[str(group["controller"])] = error, bool(group["is_best"])
     rows = [
@@ -35,6 +35,13 @@ def make_overview(groups: Sequence[Mapping[str, Any]]) -> Overview:
         for cell, found in cells.items()
     ]
     return Overview(names, controllers, rows)
+
+
+def _describe_failures(group: Mapping[str, Any]) -> str:
+    """Count the failed flights of a group; "" if there are none."""
+    if not group["failure_rate"] > 0:  # NaN if no flight ran
+        return ""
+    return f"{round(group['failure_rate'] * group['flights'])} of {group['flights']} failed"
 
 
 def describe_best(groups: Sequence[Mapping[str, Any]]) -> List[str]:
@@ -47,7 +54,8 @@ def describe_best(groups: Sequence[Mapping[str, Any]]) -> List[str]:
         best = [name for name, (_, is_best) in zip(overview.controllers, found) if is_best]
         where = f"On {', '.join(cell)}"
         if not best:
-            sentences.append(f"{where}, every controller failed.")
+            if any(text for text, _ in found):  # otherwise no flight of the cell ran
+                sentences.append(f"{where}, no controller completed all flights.")
         elif len(best) == len(overview.controllers):
             sentences.append(f"{where}, no controller is significantly better than the others.")
         else:
