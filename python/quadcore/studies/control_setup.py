@@ -17,6 +17,7 @@ from ..support.arguments import shorten
 from ..support.user_code import names_file
 from ..support.values import SPAWN, check_pose
 from .executor import run_contained
+from .time_limit import time_limit
 
 Controllers = Union[ControllerLike, Mapping[str, ControllerLike], Sequence[ControllerLike]]
 """One or several controllers, or a mapping of labels to controllers."""
@@ -104,16 +105,24 @@ class ControlSetup:
         return _is_user_code(self.things[controller])
 
     @lru_cache(maxsize=None)  # noqa: B019  (setups live as long as their study)
-    def is_vectorized(self, controller: int) -> bool:
-        """Whether a controller commands several vehicles at once; imports no user code here."""
+    def is_vectorized(self, controller: int, limit: float) -> bool:
+        """Whether a controller commands several vehicles at once; imports no user code here.
+
+        One that is not made within the wall-clock limit (s) does not.
+        """
         thing = self.things[controller]
         if not isinstance(thing, str):
             return vectorized.is_vectorized(thing)
         if not names_user_code(thing):
             return False
         found: List[Any] = []
+
+        def ask(text: str) -> bool:
+            with time_limit(limit):
+                return vectorized.is_vectorized(controllers.parse(text, ""))
+
         run_contained(
-            lambda text: vectorized.is_vectorized(controllers.parse(text, "")),
+            ask,
             [thing],
             lambda _, answer: found.append(answer),
             1,

@@ -214,7 +214,8 @@ class _Flights:
             return share_out([i for i in rows if i not in drawn], processes)
         groups: List[Sequence[int]] = []
         for combination in split(rows, len(plan.seeds)):  # they differ only in the seed
-            if plan.control.is_vectorized(plan[combination[0]].controller):
+            controller = plan[combination[0]].controller
+            if plan.control.is_vectorized(controller, plan.options.time_limit):
                 groups += split([i for i in combination if i not in drawn], MOST_VECTORIZED)
         return groups
 
