@@ -120,10 +120,10 @@ def fly(
         with run:
             flight = _core.Flight(simulation, table, log_every, wrenches, topics)
             most = _ROWS * log_every
-        if pace:
-            most = max(1, min(most, int(_PACED * pace / simulation.dt)))
-        waiting = _Pace(pace, simulation.dt)
-        _advance(simulation, flight, total, most, receive, progress, pilot, waiting)
+            if pace:
+                most = max(1, min(most, int(_PACED * pace / simulation.dt)))
+            waiting = _Pace(pace, simulation.dt)
+            _advance(simulation, flight, total, most, receive, progress, pilot, waiting)
 
 
 class _Pace:

@@ -35,7 +35,7 @@ double outer_radius(const Obstacle& obstacle) {
     case ObstacleKind::box:
       return size.norm() / 2;
     case ObstacleKind::cylinder:
-      return std::hypot(size.x(), size.y() / 2);
+      return Eigen::Vector2d(size.x(), size.y() / 2).norm();
     case ObstacleKind::sphere:
       return size.x();
     case ObstacleKind::plane:

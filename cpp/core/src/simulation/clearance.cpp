@@ -13,7 +13,7 @@ constexpr double least_progress = 1e-9;  // m
 
 double outer_radius_of(ShapeKind kind, const Vector3d& size) {
   if (kind == ShapeKind::box) return size.norm() / 2;
-  return kind == ShapeKind::cylinder ? std::hypot(size.x(), size.y() / 2) : size.x();
+  return kind == ShapeKind::cylinder ? Eigen::Vector2d(size.x(), size.y() / 2).norm() : size.x();
 }
 
 Convex make_convex(ShapeKind kind, const Vector3d& size, const Vector3d& position,
@@ -68,9 +68,13 @@ std::vector<Vector3d> outer_points(const Convex& shape) {
       add(signs.cwiseProduct(shape.size) / 2);
     }
   } else if (shape.kind == ShapeKind::cylinder) {
-    for (int i = 0; i < 16; ++i) {
-      const double angle = M_PI / 4 * (i / 2), z = (i % 2 == 0 ? 0.5 : -0.5) * shape.size.y();
-      add({shape.size.x() * std::cos(angle), shape.size.x() * std::sin(angle), z});
+    const double r = shape.size.x(), h = shape.size.y() / 2, s = r * std::sqrt(0.5);
+    for (const double z : {-h, h}) {
+      for (const double x : {-r, r}) add({x, 0, z});
+      for (const double y : {-r, r}) add({0, y, z});
+      for (const double x : {-s, s}) {
+        for (const double y : {-s, s}) add({x, y, z});
+      }
     }
   }
   return points;
