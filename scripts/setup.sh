@@ -88,7 +88,8 @@ create_venv() {
 install_quadcore() {
   local sources
   sources=$(find CMakeLists.txt pyproject.toml constraints.txt cpp python urdf worlds config launch \
-    msg srv web/player -type f -not -name '*.pyc' -not -path '*/bundle/*' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
+    msg srv web -type f -not -name '*.pyc' -not -path '*/bundle/*' -not -path '*/node_modules/*' -print0 |
+    sort -z | xargs -0 sha256sum | sha256sum)
   [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources $python_extras" ] &&
     { [ "$python_extras" != test ] || [ -e $tests/CMakeCache.txt ]; } && return
   say "building and installing quadcore and what it needs into .venv"

@@ -104,7 +104,7 @@ class Spinner:
 
 def test_the_time_limit_leaves_no_process_of_a_controller_behind(tmp_path, monkeypatch):
     monkeypatch.setenv("CLOSED", str(tmp_path / "closed"))
-    found = qc.evaluate(Spinner(), "hover", duration=0.1, seeds=2, time_limit=0.5, processes=2)
+    found = qc.evaluate(Spinner(), "hover", duration=0.1, seeds=2, time_limit=3, processes=2)
     assert all("time limit" in row["failure"] for row in found.table)
     pids = (tmp_path / "closed").read_text().split()
     assert len(pids) == 2

@@ -111,4 +111,4 @@ def test_octave_draws_the_figures_of_a_flight(log, tmp_path):
 
 def test_a_vehicle_is_written_to_mat_files_only(tmp_path, capsys):
     assert main(["info", "quadrotor", "--vehicle", str(tmp_path / "vehicle.txt")]) == 2
-    assert "name a .mat file" in capsys.readouterr().err
+    assert "Name a file that ends in .mat" in capsys.readouterr().err

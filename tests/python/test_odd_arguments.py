@@ -127,7 +127,7 @@ def test_each_log_is_written_once_and_holds_what_its_name_says(capsys):
     assert "would be written twice" in capsys.readouterr().err
     log = quadrotor().run(0.01)
     for write in (log.to_csv, log.to_mat):
-        with pytest.raises(qc.InputError, match="name a file that ends in"):
+        with pytest.raises(qc.InputError, match="Name a file that ends in"):
             write("a.npz")
 
 

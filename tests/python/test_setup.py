@@ -32,7 +32,7 @@ def checkout(tmp_path):
         shutil.copy(ROOT / "scripts" / name, tmp_path / "scripts")
     for name in ("CMakeLists.txt", "pyproject.toml", "constraints.txt"):
         shutil.copy(ROOT / name, tmp_path)
-    for name in ("cpp", "python", "urdf", "worlds", "config", "launch", "msg", "srv", "bin"):
+    for name in ("cpp", "python", "urdf", "worlds", "config", "launch", "msg", "srv", "web", "bin"):
         (tmp_path / name).mkdir()
     dpkg_query = tmp_path / "bin" / "dpkg-query"  # nothing is missing
     dpkg_query.write_text("#!/bin/sh\necho install ok installed\n")
