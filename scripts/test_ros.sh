@@ -54,7 +54,7 @@ copy_sources() {
   rm -rf $workspace/src/quadcore
   mkdir -p $workspace/src/quadcore/tests
   cp -rp CMakeLists.txt LICENSE README.md package.xml pyproject.toml setup.py cpp python launch msg srv \
-    urdf worlds config docs scripts $workspace/src/quadcore
+    urdf worlds config docs scripts web $workspace/src/quadcore
   cp -rp tests/ros $workspace/src/quadcore/tests
   # Messages of others that the distribution lacks.
   local package

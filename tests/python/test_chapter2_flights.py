@@ -190,7 +190,9 @@ def test_a_vehicle_beyond_chapter_2_is_refused(tags, says):
 
 
 def test_a_vehicle_without_air_is_refused(hangar):
-    with pytest.raises(qc.InputError, match=r"needs one plugin libaerodynamic_plugin\.so; got 0"):
+    with pytest.raises(
+        qc.InputError, match=r"needs one plugin libaerodynamic_plugin\.so, but got 0"
+    ):
         Vehicle.of(hangar(vehicle(motor=MOTOR)))
 
 

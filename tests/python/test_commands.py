@@ -85,8 +85,8 @@ def test_a_fault_in_a_csv_file_names_file_and_line(csv, lines, message):
 @pytest.mark.parametrize(
     ("variables", "message"),
     [
-        ({"t": [0, 1], "w1": [1, 2]}, "takes t, w1, w2"),
-        ({"t": [0], "w1": [1], "w2": [1], "w3": [1]}, "takes t, w1, w2"),
+        ({"t": [0, 1], "w1": [1, 2]}, "save t, w1, w2"),
+        ({"t": [0], "w1": [1], "w2": [1], "w3": [1]}, "save t, w1, w2"),
         ({"t": [0, 1], "w1": [1, 2], "w2": [1]}, "w2 has 1 values, t has 2"),
         ({"t": [0, 1], "w1": [1, 2], "w2": [1, np.nan]}, "row 2: w2 is nan"),
         ({"t": [1, 0], "w1": [1, 2], "w2": [1, 2]}, "row 2: t = 0 is not later than 1"),
@@ -126,7 +126,7 @@ def test_arrays_and_paths_are_taken_alike(csv):
 @pytest.mark.parametrize(
     ("array", "message"),
     [
-        (TABLE[:, :2], r"shape \(2, 2\).*takes \(rows, 3\)"),
+        (TABLE[:, :2], r"shape \(2, 2\).*Give \(rows, 3\)"),
         (TABLE[0], r"shape \(3,\)"),
         ([[0, 1], [1]], "not a table of numbers"),
         ([[0, 1, np.inf]], "row 0: w2 is inf"),

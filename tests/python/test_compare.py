@@ -177,7 +177,10 @@ def test_the_number_of_processes_changes_no_byte():
     files = sorted(path.relative_to("1") for path in Path("1").rglob("*") if path.is_file())
     assert len(files) == 16  # 7 logs, 6 pictures, table, numbers, report
     for file in files:
-        assert (Path("1") / file).read_bytes() == (Path("3") / file).read_bytes(), file
+        one, other = ((Path(jobs) / file).read_bytes() for jobs in ("1", "3"))
+        if file.suffix == ".html":  # its head has the date and the command line
+            one, other = (page.partition(b"</header>")[2] for page in (one, other))
+        assert one == other != b"", file
 
 
 def test_metrics_are_those_of_the_logs():

@@ -189,15 +189,16 @@ class _WorkerPool:
         except (EOFError, OSError):
             connection.close()
             process.join()
-            self._replace()
             reason = time_limit.read_report(process.report)
+            process.report.close()
+            self._replace()
             return index, ProcessDied(process.exitcode, reason)
         if fault is not None:
             self.busy[connection] = index, process  # to be ended
             raise RuntimeError(fault)
         if self._apart:
             connection.close()
-            process.join()
+            _join(process)
             self._replace()
         else:
             self._give(connection, process)
@@ -218,7 +219,7 @@ class _WorkerPool:
             process.join(_PATIENCE)
             if process.exitcode is None:
                 process.kill()
-                process.join()
+            _join(process)
 
     def _replace(self) -> bool:
         """Start another process; returns False if only the existing ones can continue."""
@@ -237,7 +238,13 @@ class _WorkerPool:
                 connection.send(case)
             return
         connection.close()  # no case remains: the process ends
-        process.join()
+        _join(process)
+
+
+def _join(process: Any) -> None:
+    """Wait for the end of a process."""
+    process.join()
+    process.report.close()
 
 
 def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
