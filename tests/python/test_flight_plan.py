@@ -97,7 +97,7 @@ def test_what_is_wrong_with_a_plan_is_said_before_it_flies(toy):
         ({"seed": -1}, "seed is -1"),
         ({"commands": [[0, 1, 2]]}, "Give \\(rows, 2\\): t,w1"),
         ({"commands": "nope.csv"}, "nope.csv: cannot be read"),
-        ({"model": qc.read_model("toy.urdf"), "xacro_args": {"a": 1}}, "is read already"),
+        ({"model": qc.read_model("toy.urdf"), "xacro_args": {"a": 1}}, "has already been read"),
     ):
         with pytest.raises(qc.InputError, match=says):
             qc.FlightPlan.of(**{"model": "toy.urdf", **options})
