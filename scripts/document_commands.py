@@ -96,8 +96,8 @@ EXAMPLES = {
         "quadcore predict crazyflie --log flight.csv --out out/prediction",
         "The log is that of the same vehicle, so that only the differences of steps remain. "
         "See [fit a model](../fit.md#recordings-of-real-flights).",
-        before="quadcore run crazyflie --controller geometric --reference eight --engine eigen \\\n"
-        "  --duration 12 --log-every 10 --log flight.csv --quiet",
+        before="QUADCORE_SHORT=no quadcore run crazyflie --controller geometric --reference eight "
+        "--engine eigen \\\n  --duration 12 --log-every 10 --log flight.csv --quiet",
         is_exact=False,
     ),
     "convert": Example(
