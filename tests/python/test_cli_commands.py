@@ -208,7 +208,8 @@ def test_run_describes_the_flight_in_its_folder():
     found = json.loads(Path("out/run.json").read_text())
     expected = {"model": "quadrotor", "engine": "eigen", "seed": 3, "world": "basic"}
     assert expected.items() <= found.items()
-    assert {"quadcore", "date", "host", "arguments"} <= set(found)
+    assert {"quadcore", "date", "host"} <= set(found)
+    assert found["command"].startswith("quadcore run quadrotor ")
     assert qc.Simulation("out/model.urdf").mass == qc.Simulation(parameters={"frame.mass": 2}).mass
     page = Path("out/report.html").read_text()
     assert (
@@ -314,6 +315,7 @@ def test_an_unfinished_sweep_is_neither_replaced_nor_lost(capsys):
     assert main(words) == 0
     rows = Path("out/table.csv").read_bytes()
     Path("out/sweep.json").unlink()  # is written last
+    Path("out/run.json").unlink()
     Path("out/report.html").unlink()
     assert "contains rows. Add --resume" in refusal(capsys, *words)
     assert Path("out/table.csv").read_bytes() == rows

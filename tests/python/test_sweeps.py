@@ -194,7 +194,7 @@ def test_the_page_tells_what_was_flown(in_empty_folder):
         assert part in page
     assert {path.name for path in Path("out").iterdir()} == {
         "table.csv", "table.parquet", "sweep.json", "report.html", "measure.png",
-        "sensitivity.png", "surface.png", "parallel.png",
+        "sensitivity.png", "surface.png", "parallel.png", "run.json", "logs", "models",
     }  # fmt: skip
 
 

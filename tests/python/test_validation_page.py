@@ -66,12 +66,15 @@ def test_the_same_command_writes_the_same_bytes_and_prints_what_it_found(out, tm
     assert "cause  " in printed.out
     assert f"written {tmp_path / 'report.html'}" in printed.out
     assert printed.err == ""
-    names = sorted(path.name for path in out.iterdir())
-    assert len(names) == 13
+    names = sorted(str(path.relative_to(out)) for path in out.rglob("*") if path.is_file())
+    assert len([name for name in names if "/" not in name]) == 14
+    assert {"logs/1.csv", "models/1.urdf"} <= set(names)
     for name in names:
         one, other = ((folder / name).read_bytes() for folder in (out, tmp_path))
         if name == "report.html":  # its head has the command line and the date
             one, other = (page.partition(b"</header>")[2] for page in (one, other))
+        if name == "run.json":  # so has its first part
+            one, other = (text.partition(b'"worlds"')[2] for text in (one, other))
         assert one == other != b"", name
 
 
@@ -169,7 +172,7 @@ def test_a_process_killed_while_it_draws_costs_its_picture_alone(tmp_path, monke
     assert len(drawn) == 7 and "attitude_none" not in drawn and "velocity_induced" not in drawn
     page = (tmp_path / "report.html").read_text()
     assert page.count("data:image/png;base64,") == 7
-    assert len(list(tmp_path.iterdir())) == 7 + 5
+    assert len(list(tmp_path.iterdir())) == 7 + 8  # figures; tables, page, run.json, folders
 
 
 def test_flights_that_fail_are_rows_with_a_reason(tmp_path, capsys):

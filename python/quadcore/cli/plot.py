@@ -13,7 +13,7 @@ from ..studies.table import save_files
 from ..support.output_files import make_folder
 from . import options, terminal
 from .parser import add_command, find_group
-from .play import add_logs, read_logs
+from .played_flights import add_logs, find_flights
 
 _OUT = Path("out/plot")
 _ROWS = 20_000  # of each of several logs; a plot shows no more
@@ -44,8 +44,9 @@ def register(commands: Any) -> None:
 
 def plot_logs(arguments: argparse.Namespace) -> None:
     """Read the logs and write the plots."""
-    files, names = read_logs(arguments)
-    logs = [Log.of_file(file, arguments.mapping) for file in files]
+    played = find_flights(arguments)
+    names = [flight.name for flight in played]
+    logs = [Log.of_file(flight.log, arguments.mapping) for flight in played]
     if len(logs) == 1:
         logs[0].title = names[0]
         written = logs[0].plot(arguments.out)

@@ -16,6 +16,7 @@ from ..simulation.engines import check_wrenches, list_engines
 from ..simulation.flight import count_steps, fly, list_columns
 from ..simulation.log import check_log_path, make_log_file
 from ..simulation.recording import DecimatedRows, FastestRotor, Recording, TrackingError
+from ..studies.flight_folder import DOCUMENT
 from ..studies.options import OUTPUT
 from ..studies.output_folder import output_folder
 from ..support import interrupts, parse
@@ -78,7 +79,7 @@ def run_flight(arguments: argparse.Namespace) -> None:
         check_wrenches(arguments.engine)
     if arguments.pace is not None and not arguments.live:
         raise InputError("--pace: needs --live, which shows the flight. Add --live.")
-    with output_folder(arguments.out, run_folder.FILES, run_folder.DOCUMENT):
+    with output_folder(arguments.out, run_folder.FILES, DOCUMENT):
         _run(arguments)
 
 
@@ -105,7 +106,9 @@ def _run(arguments: argparse.Namespace) -> None:
     files = _check_log_files(arguments)
     logs = [make_log_file(file, columns, terms, simulation.ignored) for file in files]
     recording = Recording(logs, others)
-    described = run_folder.write_description(arguments, plan) if out is not None else []
+    described = []
+    if out is not None:
+        described = run_folder.write_description(arguments, plan, simulation)
     started = time.perf_counter()
     try:
         with terminal.show_progress(arguments.quiet) as progress, convert_controller_errors(

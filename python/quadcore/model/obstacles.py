@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Sequence
+
 import numpy as np
 
 from .._core import World
@@ -23,3 +25,13 @@ def draw_world(world: World) -> DrawnWorld:
         size = tuple(obstacle.size[: _LENGTHS[obstacle.kind]])
         shapes.append(DrawnShape(obstacle.kind, size, pose))
     return DrawnWorld(world.ground_plane, shapes)
+
+
+def join_worlds(worlds: Sequence[DrawnWorld]) -> DrawnWorld:
+    """Return the ground and the obstacles of several worlds, each obstacle once."""
+    obstacles = {
+        (shape.kind, shape.size, shape.pose.tobytes()): shape
+        for world in worlds
+        for shape in world.obstacles
+    }
+    return DrawnWorld(any(world.ground for world in worlds), list(obstacles.values()))

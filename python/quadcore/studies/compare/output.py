@@ -8,8 +8,10 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
+from ...model.obstacles import draw_world, join_worlds
 from ...model.visuals import read_vehicle
 from ...report.decimation import pick_evenly
+from ..flight_folder import DOCUMENT, WrittenFlight, remove_flights, write_flights
 from ..output_folder import remove_listed_files
 from ..table import (
     choose_display_unit,
@@ -31,7 +33,7 @@ def pick_drawn(count: int) -> List[int]:
     return pick_evenly(count, _DRAWN)
 
 
-FILES = ("table.csv", "comparison.json", "report.html")
+FILES = ("table.csv", "comparison.json", DOCUMENT, "report.html")
 
 
 def log_name(row: int, count: int) -> str:
@@ -40,7 +42,8 @@ def log_name(row: int, count: int) -> str:
 
 
 def remove_logs(folder: Path) -> None:
-    """Remove the logs of an earlier comparison."""
+    """Remove the logs and models of an earlier comparison."""
+    remove_flights(folder)
     remove_listed_files(
         folder, "comparison.json", "logs", re.compile(r"logs/[0-9]+\.csv").fullmatch
     )
@@ -79,6 +82,7 @@ def write(
         "comparison.json": make_json(_make_content(comparison, flight, has_logs)),
     }
     written = save_files(folder, tables)
+    written += write_flights(folder, _list_flights(comparison, plan) if has_logs else [])
     images = _draw_plots(comparison, plan) if plots else {}
     written += save_files(folder, {f"{name}.png": data for name, data in images.items()})
     page = folder / "report.html"
@@ -108,17 +112,27 @@ def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     return {name: png(figure) for name, figure in figures.items()}
 
 
+def _list_flights(comparison: Comparison, plan: Plan) -> List[WrittenFlight]:
+    """List the flights that have a log."""
+    return [
+        WrittenFlight(plan.make_label(case), log_name(row, len(plan)), flown.model, flown.world)
+        for row, (case, failure) in enumerate(zip(plan, comparison.table["failure"]))
+        if not failure
+        for flown in [plan.make_plan_without_controller(case)]
+    ]
+
+
 def _make_player(comparison: Comparison, plan: Plan, plots: bool) -> str:
     """Make an animation of the flights that are drawn; empty without any."""
     from ...report.player import PlayerFlight, make_section
 
-    vehicles = [read_vehicle(model) for model in plan.variation.models] if plots else []
-    shown = [
-        PlayerFlight(plan.make_label(variant), log, vehicles[variant.model])
-        for log, variant in zip(comparison.logs, plan)
-        if plots and log is not None and len(log)
-    ]
-    return make_section(shown) if shown else ""
+    shown, worlds = [], []
+    for log, case in zip(comparison.logs, plan):
+        if plots and log is not None and len(log):
+            flown = plan.make_plan_without_controller(case)
+            shown.append(PlayerFlight(plan.make_label(case), log, read_vehicle(flown.model)))
+            worlds.append(draw_world(flown.world))
+    return make_section(shown, join_worlds(worlds)) if shown else ""
 
 
 def _table_rows(comparison: Comparison) -> Iterable[Sequence[Any]]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ... import __version__
 from ...support.output_files import encode_text
+from ..flight_folder import DOCUMENT, remove_flights
 from ..output_folder import remove_plots, save_plots
 from ..table import (
     NOT_FLOWN,
@@ -20,6 +21,7 @@ from ..table import (
     save_files,
 )
 from ..tracking_metrics import MEANINGS, UNITS
+from .animations import make_animations, write_drawn_flights
 from .best_controllers import describe_seeds
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
@@ -41,7 +43,8 @@ _SWITCHES = ("feed_forward", "drag", "gyroscopic", "flat_rates", "integral", "le
 
 
 FILES = (
-    "table.csv", "evaluation.json", "timing.csv", "comparison.csv", "comparison.tex", "report.html"
+    "table.csv", "evaluation.json", "timing.csv", "comparison.csv", "comparison.tex", DOCUMENT,
+    "report.html",
 )  # fmt: skip
 
 
@@ -60,6 +63,7 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     from ...report.page import write_page  # jinja2 is slow to import
 
     remove_plots(folder, "evaluation.json", is_plot)
+    remove_flights(folder)
     # Results first: drawing is slow and can fail.
     is_whole = all(row["failure"] != NOT_FLOWN for row in evaluation.table)
     step_error = measure_step_error(plan) if is_whole else None
@@ -73,41 +77,17 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
         "comparison.tex": encode_text(make_latex(evaluation.groups)),
     }
     written = save_files(folder, tables)
+    written += write_drawn_flights(evaluation, plan, folder)
     images = draw(evaluation, plan.list_events()) if plots else {}
     written += save_plots(folder, "evaluation.json", content, images)
     page = folder / "report.html"
-    animations = _make_animations(evaluation, plan) if plots else []
+    animations = make_animations(evaluation, plan) if plots else []
     values = _page_values(evaluation, plan, images)
     if step_error is not None:
         values["notes"].append(step_error.describe())
     settings = _list_settings(plan)
     write_page(page, "evaluate.html", **values, animations=animations, settings=settings)
     return [*written, page]
-
-
-def _make_animations(evaluation: Evaluation, plan: Plan) -> List[Dict[str, Any]]:
-    """Make an animation of the flights along each reference in each scenario."""
-    from ...report.player import PlayerFlight, make_section
-
-    events = plan.list_events()
-    animations = []
-    for (reference, scenario), flights in group_flights(evaluation).items():
-        marks = [(event.time, event.text) for event in events.get(scenario, ())]
-        shown = [
-            PlayerFlight(
-                label,
-                outcome.log,
-                outcome.vehicle,
-                marks,
-                outcome.limit,
-                style,
-            )
-            for label, outcome, style in flights
-            if outcome.log is not None
-        ]
-        name = name_group(evaluation, reference, scenario)
-        animations.append({"name": name, "player": make_section(shown)})
-    return animations
 
 
 def _describe_omitted_flights(evaluation: Evaluation) -> str:

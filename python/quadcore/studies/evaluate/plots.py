@@ -36,6 +36,8 @@ class DrawnFlight(NamedTuple):
     outcome: Outcome
     style: int
     """Number of its `curve_style`, the same in all figures and in the player."""
+    row: int
+    """Row of the table of the evaluation."""
 
 
 Flights = List[DrawnFlight]
@@ -108,7 +110,7 @@ def group_flights(evaluation: Evaluation) -> Dict[Tuple[str, str], Flights]:
         cells = evaluation.table[row]
         label = _name_curve(cells, evaluation)
         shown = label + " (failed)" * bool(outcome.failure)
-        flight = DrawnFlight(shown, outcome, styles[label])
+        flight = DrawnFlight(shown, outcome, styles[label], row)
         found.setdefault((cells["reference"], cells["scenario"]), []).append(flight)
     return found
 
@@ -147,7 +149,7 @@ def _draw_tracks(name: str, flights: Flights) -> Figure:
     reference = next(each.outcome.log.topics["reference"] for each in flights if each.outcome.log)
     for axes, (a, b) in ((above, "xy"), (side, "xz")):
         dress(axes)
-        for label, outcome, style in flights:
+        for label, outcome, style, _ in flights:
             assert outcome.log is not None
             at = dict(zip("xyz", outcome.log.position[_rows_before_failure(outcome)].T))
             axes.plot(at[a], at[b], label=label, linewidth=1.2, **curve_style(style))
@@ -165,7 +167,7 @@ def _draw_errors(name: str, flights: Flights) -> Figure:
         title, 1, height=2.8, above=_header_height([flight.label for flight in flights])
     )
     axes = grid[0, 0]
-    for label, outcome, style in flights:
+    for label, outcome, style, _ in flights:
         assert outcome.log is not None
         rows = _rows_before_failure(outcome)
         errors = np.maximum(compute_errors(outcome.log)[rows], _FLOOR)
@@ -183,10 +185,10 @@ def _draw_rotors(name: str, flights: Flights) -> Figure:
     title = f"Rotor speed: {name}"
     if len(drawn) < len(flights):
         title += f" ({len(drawn)} of {len(flights)} flights)"
-    count = max(outcome.log.rotor_velocity.shape[1] for _, outcome, _ in drawn if outcome.log)
+    count = max(outcome.log.rotor_velocity.shape[1] for _, outcome, _, _ in drawn if outcome.log)
     room = 0.15 + _header_height(["rotor 1"] * count)
     figure, grid = panels(title, len(drawn), height=1.3, above=room)
-    for axes, (label, outcome, _) in zip(grid[:, 0], drawn):
+    for axes, (label, outcome, _, _) in zip(grid[:, 0], drawn):
         assert outcome.log is not None
         rows = _rows_before_failure(outcome)
         speeds = np.abs(outcome.log.rotor_velocity[rows])
@@ -210,7 +212,7 @@ def _draw_responses(name: str, flights: Flights) -> Figure:
         title, 1, height=2.8, above=_header_height([flight.label for flight in flights])
     )
     axes = grid[0, 0]
-    for label, outcome, style in flights:
+    for label, outcome, style, _ in flights:
         if outcome.response is not None:
             axes.plot(*outcome.response.T, label=label, linewidth=1.2, **curve_style(style))
     axes.axhline(1, **REFERENCE)

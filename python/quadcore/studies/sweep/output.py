@@ -10,6 +10,7 @@ import numpy as np
 
 from ... import __version__
 from ..._core import InputError
+from ..flight_folder import DOCUMENT, remove_flights
 from ..output_folder import remove_plots, save_plots
 from ..table import format_number, format_settings, make_json, save_files
 from . import plots as sweep_plots
@@ -17,8 +18,9 @@ from .plan import AnyPlan
 from .repeat_command import write_command
 from .sensitivity import compute_sensitivities, list_combinations
 from .sweep import PARQUET, TABLE
+from .watched_rows import make_player, watch_rows, write_watched_rows
 
-FILES = (TABLE, "sweep.json", "report.html")
+FILES = (TABLE, "sweep.json", DOCUMENT, "report.html")
 
 WORST = 10
 """Number of worst rows, and of failed rows, that are listed with their command."""
@@ -63,7 +65,10 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         "worst": list_worst(plan, columns, measure),
     }
     remove_plots(folder, "sweep.json", sweep_plots.NAMES.__contains__)
+    remove_flights(folder)
     written = save_files(folder, {"sweep.json": make_json(content)})
+    watched = watch_rows(plan, columns, measure)
+    written += write_watched_rows(watched, folder)
     images = sweep_plots.draw(plan, columns, found, measure) if plots else {}
     written += save_plots(folder, "sweep.json", content, images)
     page = folder / "report.html"
@@ -76,6 +81,7 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         lines=[_format(row) for row in summarise_rows(plan, columns)],
         sensitivities=_drop_repeated([_format(row) for row in found if row["measure"] == measure]),
         measure=measure,
+        player=make_player(watched) if plots else "",
         worst=[_format(row) for row in list_worst(plan, columns, measure)],
         meanings=plan.meanings,
         units=plan.units,
@@ -89,6 +95,7 @@ def remove_sweep(folder: Path) -> None:
     if not (folder / "sweep.json").exists():
         return
     remove_plots(folder, "sweep.json", sweep_plots.NAMES.__contains__)
+    remove_flights(folder)
     for name in (*FILES, PARQUET):
         with contextlib.suppress(OSError):
             (folder / name).unlink()

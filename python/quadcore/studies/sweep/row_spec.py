@@ -11,7 +11,9 @@ from typing import Any, Mapping, NamedTuple, Optional, Protocol, Tuple
 
 from ..._core import FlightError, InputError, QuadcoreError
 from ...control import controllers
+from ...report.decimation import decimate
 from ...simulation.flight_plan import FlightPlan
+from ...simulation.log import Log
 from ...support.user_code import describe_error, split_name
 from ...support.warning import suppress_warnings
 from ..measured_flight import fly_and_measure
@@ -82,6 +84,21 @@ class Flight:
         if outcome.failure:
             raise FlightError(outcome.failure)
         return outcome.measures
+
+    def watch(self) -> Log:
+        """Simulate the flight again and return a decimated log, also of a failed flight.
+
+        Raises
+        ------
+        QuadcoreError
+            If the flight cannot start, or exceeds the time limit.
+        """
+        if self.own is None and self.plan.controller is None:
+            with time_limit(self.limit), suppress_warnings():
+                return decimate(self.plan.fly())
+        outcome = fly_and_measure(self._plan_with_controller, self.limit, keep=True, timed=False)
+        assert outcome.log is not None
+        return outcome.log
 
     def _plan_with_controller(self) -> FlightPlan:
         if self.own is None:

@@ -11,6 +11,7 @@ import numpy as np
 from ..._core import InputError
 from ...report.page import write_page
 from ...studies.table import make_csv, make_json, save_files
+from .animation import make_player, write_drawn_flights
 from .error_budget import Chain
 from .experiment import Case
 from .states import STATES
@@ -25,7 +26,8 @@ _TOLD = ("max", "rms")
 def write_tables(study: Study, directory: Path) -> List[Path]:
     """Write all numbers to an existing folder; equal studies give bit-identical files.
 
-    Figures of another study in this folder are removed.
+    Flights to watch are written too; only the tables are returned. Figures of another study in
+    this folder are removed.
 
     Raises
     ------
@@ -44,6 +46,7 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
                 old.unlink()
             except OSError as error:
                 raise InputError(f"{old}: cannot be removed: {error.strerror}") from error
+    write_drawn_flights(study, directory)
     return save_files(directory, files)
 
 
@@ -84,6 +87,7 @@ def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -
         thesis_figures=thesis_figures,
         size=size,
         degrees=np.degrees,
+        player=make_player(study) if pictures else "",
     )
     return page
 
