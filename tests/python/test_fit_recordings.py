@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from processes import ran, refused
+from test_player import content_of
 
 import quadcore as qc
 from quadcore.formats.recordings import Recording, read_recording
@@ -225,7 +226,9 @@ def test_a_fit_to_one_real_flight_predicts_another_better_than_baselines(tmp_pat
     for channel, factor in (("position", 0.7), ("attitude", 1)):
         assert errors["fitted model", channel][2] < factor * errors[constant, channel][2]
     assert "frame.izz" in done.stdout and "turned by" in done.stdout
-    assert "measured and predicted" in (tmp_path / "report/prediction.html").read_text()
+    page = (tmp_path / "report/report.html").read_text()
+    assert "The fitted model predicts the position better than the initial model" in page
+    assert [flight["name"] for flight in content_of(page)["flights"]] == ["measured", "predicted"]
     assert "exponent: 1.0" in (tmp_path / "fitted.inputs.yaml").read_text()
     again = ran("predict", tmp_path / "fitted.urdf", "--log", REP11, "--out", tmp_path / "p")
     assert again.returncode == 0, again.stderr

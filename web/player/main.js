@@ -108,6 +108,7 @@ class Player {
     });
     if (!this.flights.some((flight) => flight.columns.wind)) this.root.classList.add("calm");
     if (!this.flights.some((flight) => flight.payloads.length)) this.root.classList.add("unladen");
+    if (!this.flights.some((flight) => flight.columns.reference)) this.root.classList.add("unguided");
     if (this.flights.length === 1) this.root.classList.add("single");
   }
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Sequence
 
 from .._core import InputError, engines, parse_number
 from ..formats.recordings import is_recording
+from ..model.description import read_world
 from ..simulation.engines import STUDY_ENGINE
 from ..studies.fit.record import CHANNELS
+from ..studies.flight_folder import DOCUMENT
 from ..studies.options import FLIGHT, OUTPUT, STUDY
+from ..studies.output_folder import output_folder
 from ..support import parse
 from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, reading, terminal
@@ -120,23 +123,35 @@ def register(commands: Any) -> None:
         "--out",
         metavar="DIR",
         type=Path,
-        help="folder for the errors of --judge, or, if it ends in .urdf, the model to write",
+        help="folder for page, logs, errors of --judge and, without -o, the model; or, if it ends "
+        "in .urdf, the model to write",
     )
     options.add_quiet(parser)
 
 
 def fit_model(arguments: argparse.Namespace) -> None:
     """Identify the parameters, print them, and write the model."""
-    from ..studies.fit import fit
+    from ..studies.fit.output import FILES
 
-    out = _find_model_file(arguments)
-    if arguments.free == [DAMAGE]:
-        fit_damage(arguments, out)
-        return
-    is_real = arguments.mapping is not None or is_recording(Path(arguments.log[0]))
-    if len(arguments.log) > 1 or arguments.judge or is_real:
-        fit_real_flights(arguments, out, _read_all_bounds(arguments))
-        return
+    folder = arguments.out
+    if folder is not None and folder.suffix.lower() == ".urdf":
+        folder = None
+    with output_folder(folder, FILES, DOCUMENT):
+        out = _find_model_file(arguments, folder)
+        is_real = arguments.mapping is not None or is_recording(Path(arguments.log[0]))
+        if arguments.free == [DAMAGE]:
+            fit_damage(arguments, out, folder)
+        elif len(arguments.log) > 1 or arguments.judge or is_real:
+            fit_real_flights(arguments, out, folder, _read_all_bounds(arguments))
+        else:
+            _fit_log(arguments, out, folder)
+
+
+def _fit_log(arguments: argparse.Namespace, out: Path, folder: Optional[Path]) -> None:
+    """Fit a model to a log of quadcore."""
+    from ..studies.fit import fit
+    from ..studies.fit.output import write_fit
+
     shared = reading.read_model_arguments(arguments)
 
     def write_model(model: Any) -> None:
@@ -163,15 +178,18 @@ def fit_model(arguments: argparse.Namespace) -> None:
             **shared,
         )
     write_model(found.model)
+    written = [out]
+    if folder is not None:
+        written += write_fit(folder, found, read_world(arguments.world, arguments.ignore))
     if not arguments.quiet:
-        _show(found, out)
+        _show(found, written)
 
 
-def _find_model_file(arguments: argparse.Namespace) -> Path:
+def _find_model_file(arguments: argparse.Namespace, folder: Optional[Path]) -> Path:
     """Return the file of the fitted model; ``--out`` was its only option once."""
     out: Optional[Path] = arguments.o
-    if out is None and arguments.out is not None and not arguments.judge:
-        out = arguments.out
+    if out is None:
+        out = arguments.out if folder is None else folder / "fitted.urdf"
     if out is None:
         raise InputError("the fitted model has no file. Name it with -o FITTED.urdf.")
     if out.suffix.lower() != ".urdf":
@@ -193,7 +211,7 @@ def _read_bounds(name: str, text: str) -> tuple[float, float]:
     return minimum, maximum
 
 
-def _show(found: Fit, out: Path) -> None:
+def _show(found: Fit, written: Sequence[Path]) -> None:
     console = terminal.make_console()
     table = terminal.make_table("parameter", "start", "identified", "std dev", "unit", numbers=True)
     for name, value in found.values.items():
@@ -209,4 +227,4 @@ def _show(found: Fit, out: Path) -> None:
     for name, unit, numbers in found.list_residuals():
         table.add_row(name, *(f"{number:.4g}" for number in numbers), unit)
     console.print("", table)
-    terminal.print_written([out])
+    terminal.print_written(written)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Dict, Tuple
+from typing import Dict, Optional, Tuple
 
 from .._core import InputError
+from ..model.description import read_world
 from ..support.output_files import atomic_write, encode_text
 from . import reading, terminal
 
@@ -17,12 +18,28 @@ _FACTORS = "rotorFactors"
 
 
 def fit_real_flights(
-    arguments: argparse.Namespace, out: Path, bounds: Dict[str, Tuple[float, float]]
+    arguments: argparse.Namespace,
+    out: Path,
+    folder: Optional[Path],
+    bounds: Dict[str, Tuple[float, float]],
 ) -> None:
-    """Fit a model to recordings, judge it, and write it with its map of inputs."""
+    """Fit a model to recordings, judge it, and write it with its map of inputs.
+
+    Parameters
+    ----------
+    arguments
+        Arguments of the command.
+    out
+        File of the fitted model.
+    folder
+        Folder of the page, if any.
+    bounds
+        Minimum and maximum value by name.
+    """
     from ..studies.fit.input_file import name_input_file, write_inputs
+    from ..studies.fit.output import write_recorded_fit
     from ..studies.fit.recorded import fit_recordings
-    from .flight_tables import show_fit, show_flights, show_judgement, write_judgement
+    from .flight_tables import show_fit, show_flights, show_judgement
 
     _refuse_options(arguments)
     shared = reading.read_model_arguments(arguments)
@@ -42,8 +59,9 @@ def fit_real_flights(
         stream.write(encode_text(fit.model.document.text))
     written = [out, name_input_file(out)]
     write_inputs(written[1], fit.found.values)
-    if fit.judgement and arguments.out:
-        written += write_judgement(arguments.out, fit.judgement)
+    if folder is not None:
+        world = read_world(arguments.world, arguments.ignore)
+        written += write_recorded_fit(folder, fit, world)
     if not arguments.quiet:
         show_flights([*fit.flights, *fit.judged])
         show_fit(fit)
@@ -54,10 +72,11 @@ def fit_real_flights(
         fit.judgement.check()
 
 
-def fit_damage(arguments: argparse.Namespace, out: Path) -> None:
-    """Find the factors of damaged rotors, print them, and write the model."""
+def fit_damage(arguments: argparse.Namespace, out: Path, folder: Optional[Path]) -> None:
+    """Find the factors of damaged rotors, print them, and write the model and a page."""
     from ..studies.fit.fitted_model import FittedModel
     from ..studies.fit.model_text import write_values
+    from ..studies.fit.output import write_rotor_factors
     from ..studies.fit.predictor import find_plugin
     from ..studies.fit.prepared import read_flight
     from ..studies.fit.rotor_factors import find_rotor_factors
@@ -93,22 +112,39 @@ def fit_damage(arguments: argparse.Namespace, out: Path) -> None:
     model = write_values(fitted.model, {**fitted.fixed, f"{plugin}.{_FACTORS}": text})
     with atomic_write(out) as stream:
         stream.write(encode_text(model.document.text))
+    written = [out]
+    verdict = "no rotor has lost thrust for certain"
+    worst = found.damaged
+    if worst is not None:
+        loss = 100 * (1 - found.factors[worst])
+        verdict = f"rotor {worst + 1} ({rotors[worst].joint}) has lost {loss:.0f} % of its thrust"
+    cells = [
+        (str(i + 1), rotors[i].joint, f"{factor:.3f}", f"{deviation:.2g}")
+        for i, (factor, deviation) in enumerate(zip(found.factors, found.deviations))
+    ]
+    if folder is not None:
+        rows = [
+            {
+                "name": f"thrust of rotor {number} ({joint})",
+                "start": "1",
+                "value": factor,
+                "deviation": deviation,
+                "unit": "1",
+            }
+            for number, joint, factor, deviation in cells
+        ]
+        world = read_world(arguments.world, arguments.ignore)
+        headline = f"{verdict[:1].upper()}{verdict[1:]}."
+        written += write_rotor_factors(folder, headline, rows, model, world)
     if arguments.quiet:
         return
     console = terminal.make_console()
     table = terminal.make_table("rotor", "joint", "factor", "std dev", numbers=True)
-    for i, (factor, deviation) in enumerate(zip(found.factors, found.deviations)):
-        table.add_row(str(i + 1), rotors[i].joint, f"{factor:.3f}", f"{deviation:.2g}")
+    for row in cells:
+        table.add_row(*row)
     console.print(table, "")
-    worst = found.damaged
-    if worst is None:
-        console.print("no rotor has lost thrust for certain")
-    else:
-        loss = 100 * (1 - found.factors[worst])
-        console.print(
-            f"rotor {worst + 1} ({rotors[worst].joint}) has lost {loss:.0f} % of its thrust"
-        )
-    terminal.print_written([out])
+    console.print(verdict)
+    terminal.print_written(written)
 
 
 def _refuse_options(arguments: argparse.Namespace) -> None:

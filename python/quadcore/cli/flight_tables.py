@@ -1,16 +1,15 @@
-"""Tables on recordings of real flights, and the files of their predictions."""
+"""Tables on recordings of real flights."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, List, Sequence
+from typing import TYPE_CHECKING, Sequence
 
 import numpy as np
 
 from ..studies.fit.inputs import INPUTS
 from ..studies.fit.windows import HORIZONS
-from ..support.output_files import atomic_write, encode_text, make_folder
 from . import terminal
 
 if TYPE_CHECKING:
@@ -72,28 +71,3 @@ def show_judgement(judgement: Judgement) -> None:
     console.print(table)
     count = len(judgement.windows.start)
     console.print(f"{count} windows; the first 30 % of each flight gave its delay and trim", "")
-
-
-def write_judgement(folder: Path, judgement: Judgement) -> List[Path]:
-    """Write errors.csv, and a page with measured and predicted motion if there is a pose."""
-    from ..report.player import PlayerFlight  # jinja2 is slow to import
-    from ..report.player import make_page as render_page
-    from ..studies.fit.judgement import make_logs
-
-    make_folder(folder)
-    heads = ",".join(f"{horizon:g}s" for horizon in HORIZONS)
-    lines = [f"model,channel,unit,{heads}"]
-    for model, channel, unit, numbers in judgement.list_rows():
-        lines.append(f"{model},{channel},{unit},{','.join(repr(number) for number in numbers)}")
-    written = [folder / "errors.csv"]
-    with atomic_write(written[0]) as stream:
-        stream.write(encode_text("\n".join(lines) + "\n"))
-    logs = make_logs(judgement)
-    if logs:
-        page = render_page(
-            [PlayerFlight(name, log) for name, log in logs], "measured and predicted"
-        )
-        written.append(folder / "prediction.html")
-        with atomic_write(written[1]) as stream:
-            stream.write(encode_text(page))
-    return written

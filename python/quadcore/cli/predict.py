@@ -6,7 +6,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ..simulation.flight_plan import FlightPlan
+from ..studies.flight_folder import DOCUMENT
 from ..studies.options import OUTPUT, STUDY
+from ..studies.output_folder import output_folder
 from . import options, reading, terminal
 from .parser import add_command, find_group
 
@@ -42,7 +45,7 @@ def register(commands: Any) -> None:
     options.add_options(parser, "world")
     output.add_argument(
         "--out", metavar="DIR", type=Path, default=_OUT,
-        help=f"folder for table and page (default: {_OUT})",
+        help=f"folder for page, table and logs (default: {_OUT})",
     )  # fmt: skip
     options.add_quiet(parser)
 
@@ -58,11 +61,20 @@ def add_force(parser: argparse.ArgumentParser) -> None:
 
 def predict(arguments: argparse.Namespace) -> None:
     """Predict, print the errors, and write them."""
+    from ..studies.fit.output import FILES
+
+    with output_folder(arguments.out, FILES, DOCUMENT):
+        _predict(arguments)
+
+
+def _predict(arguments: argparse.Namespace) -> None:
     from ..studies.fit.input_file import find_inputs
+    from ..studies.fit.output import write_prediction
     from ..studies.fit.recorded import predict_recordings
-    from .flight_tables import show_flights, show_judgement, write_judgement
+    from .flight_tables import show_flights, show_judgement
 
     shared = reading.read_model_arguments(arguments)
+    plan = FlightPlan.of(**shared, world=arguments.world)
     judgement, flights = predict_recordings(
         shared.pop("model"),
         arguments.log,
@@ -71,7 +83,7 @@ def predict(arguments: argparse.Namespace) -> None:
         world=arguments.world,
         **shared,
     )
-    written = write_judgement(arguments.out, judgement)
+    written = write_prediction(arguments.out, judgement, flights, plan.model, plan.world)
     if not arguments.quiet:
         show_flights(flights)
         show_judgement(judgement)

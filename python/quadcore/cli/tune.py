@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional, Sequence
 
 from .._core import InputError
 from ..control import controllers, gains
 from ..model import resources
 from ..simulation.engines import STUDY_ENGINE
+from ..studies.flight_folder import DOCUMENT
 from ..studies.options import CONTROLLER, OUTPUT, STUDY, VEHICLE, Options
+from ..studies.output_folder import output_folder
 from ..support import parse
 from ..support.output_files import check_writable
 from . import options, reading, terminal
@@ -21,6 +23,9 @@ from .parser import add_command, complete_from, find_group
 
 if TYPE_CHECKING:
     from ..studies.tune.problem import Problem
+
+
+_YAML = (".yaml", ".yml")
 
 
 def register(commands: Any) -> None:
@@ -47,7 +52,14 @@ def register(commands: Any) -> None:
     complete_from(controller, controllers.NAMES)
     complete_from(model, list(resources.list_shipped("urdf")))
     find_group(parser, OUTPUT).add_argument(
-        "-o", "--out", metavar="GAINS.yaml", type=Path, required=True, help="file to write"
+        "-o", metavar="GAINS.yaml", type=Path, help="gains file to write"
+    )
+    find_group(parser, OUTPUT).add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="folder for page, logs and, without -o, gains.yaml; or, if it ends in .yaml, the "
+        "gains file",
     )
     group = find_group(parser, CONTROLLER)
     group.add_argument(
@@ -92,10 +104,19 @@ def register(commands: Any) -> None:
 
 def tune_controller(arguments: argparse.Namespace) -> None:
     """Search, print the gains, and write them."""
-    from ..studies.tune.tune import search_gains
+    from ..studies.tune.output import FILES
 
     arguments, problem = make_plan(arguments, _make_problem)
-    out = arguments.out
+    folder = _find_folder(arguments)
+    with output_folder(folder, FILES, DOCUMENT):
+        _tune(arguments, problem, folder)
+
+
+def _tune(arguments: argparse.Namespace, problem: Problem, folder: Optional[Path]) -> None:
+    from ..studies.tune.output import write
+    from ..studies.tune.tune import search_gains
+
+    out = _find_gains_file(arguments)
 
     def write_gains(found: Any) -> None:
         gains.write(found.gains, out)
@@ -105,18 +126,40 @@ def tune_controller(arguments: argparse.Namespace) -> None:
     ), terminal.show_progress(arguments.quiet, "tuning") as progress:
         found = search_gains(problem, arguments.budget, progress)
     write_gains(found)
+    written = [out]
+    if folder is not None:
+        written += write(found, problem, folder)
     if not arguments.quiet:
-        _show(found, out)
+        _show(found, written)
+
+
+def _find_folder(arguments: argparse.Namespace) -> Optional[Path]:
+    """Return the folder of the page, if any; ``--out`` may be the gains file."""
+    out: Optional[Path] = arguments.out
+    return None if out is None or out.suffix.lower() in _YAML else out
+
+
+def _find_gains_file(arguments: argparse.Namespace) -> Path:
+    from ..studies.tune.output import GAINS
+
+    folder = _find_folder(arguments)
+    out: Optional[Path] = arguments.o
+    if out is None:
+        out = arguments.out if folder is None else folder / GAINS
+    if out is None:
+        raise InputError("the gains have no file. Name it with -o GAINS.yaml.")
+    if out.suffix.lower() not in _YAML:
+        raise InputError(f"{out}: is not a YAML file. Name a file that ends in .yaml.")
+    return out
 
 
 def _make_problem(arguments: argparse.Namespace) -> Problem:
     from ..studies.tune.problem import Problem
 
-    out = arguments.out
-    if out.suffix.lower() not in (".yaml", ".yml"):
-        raise InputError(f"{out}: is not a YAML file. Name a file that ends in .yaml.")
+    out = _find_gains_file(arguments)
     refuse_log_every(arguments, "tuning")
-    check_writable(out)
+    if out.parent != _find_folder(arguments):  # which is made later
+        check_writable(out)
     return Problem(
         arguments.law,
         arguments.model,
@@ -130,7 +173,7 @@ def _make_problem(arguments: argparse.Namespace) -> Problem:
     )
 
 
-def _show(found: Any, out: Path) -> None:
+def _show(found: Any, written: Sequence[Path]) -> None:
     console = terminal.make_console()
     start = found.gains.history["start"]
     table = terminal.make_table("gain", "start", "found", numbers=True)
@@ -144,4 +187,4 @@ def _show(found: Any, out: Path) -> None:
         table.add_row(f"held out: {label}", f"{error:.4g}")
     console.print(table)
     console.print(f"{len(found.evaluations)} gain sets tried, {found.refused} refused")
-    terminal.print_written([out])
+    terminal.print_written(written)

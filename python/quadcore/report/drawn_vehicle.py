@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional, Sequence, Tuple
 
 import numpy as np
@@ -78,6 +78,15 @@ class DrawnVehicle:
     def rotor_count(self) -> int:
         """Number of rotors."""
         return len(self.bodies) - 1
+
+    def fix_rotors(self) -> DrawnVehicle:
+        """Return the vehicle with rotors that do not turn, for a log without their speeds."""
+        shapes = [
+            replace(shape, pose=body.pose @ shape.pose)
+            for body in self.bodies
+            for shape in body.shapes
+        ]
+        return DrawnVehicle(self.name, [DrawnBody(np.eye(4), np.zeros(3), shapes)])
 
 
 @dataclass(frozen=True, eq=False)

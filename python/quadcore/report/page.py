@@ -52,7 +52,7 @@ def render(template: str, **values: object) -> str:
         lstrip_blocks=True,
     )
     environment.filters["image"] = embed_image
-    text = environment.get_template(template).render({"run": {}, **values})
+    text = environment.get_template(template).render({"run": {}, "conditions": "", **values})
     return _add_player(text) if _PLAYER in text and "</body>" in text else text
 
 

@@ -16,6 +16,7 @@ from . import record as records
 from .fitted_model import FittedModel
 from .horizons import Horizons
 from .identifiability import Combination, Identifiability, analyse
+from .motion import FITTED, MEASURED, START, compute_motion, join_motion
 from .problem import Problem, check_free_names, make_parameter
 from .search import search
 
@@ -56,6 +57,9 @@ class Fit(NamedTuple):
         The same for the held-out horizons.
     model : Model
         Model with the fitted values.
+    motion : list of (str, Log)
+        Measured motion, and those of the fitted and the initial model; each horizon starts from a
+        measured state. Empty without the channels position and attitude.
     """
 
     values: Dict[str, float]
@@ -66,6 +70,7 @@ class Fit(NamedTuple):
     train: Dict[str, Tuple[float, float]]
     held_out: Dict[str, Tuple[float, float]]
     model: Model
+    motion: List[Tuple[str, Log]]
 
     @property
     def combinations(self) -> List[Combination]:
@@ -220,6 +225,7 @@ def _make_fit(
     )
     start = np.array([p.start for p in wanted])
     residuals: List[Dict[str, Tuple[float, float]]] = []
+    motion: List[Dict[str, np.ndarray]] = []
     for is_held_out in (False, True):
         try:
             judged = problem(is_held_out)
@@ -227,12 +233,14 @@ def _make_fit(
             residuals.append({})
             continue
         judged.horizons.shift = train.horizons.shift
-        each = []
-        for tried in (start, found):
+        each, simulated = [], {}
+        for name, tried in ((START, start), (FITTED, found)):
             judged.starts[:] = 0
             judged.noise = train.noise.copy()
             each.append(_compute_rms(judged, tried))
+            simulated.update(compute_motion(judged, {name: tried}))
         residuals.append({name: (each[0][name], each[1][name]) for name in each[0]})
+        motion.append({name: simulated[name] for name in (MEASURED, FITTED, START) if simulated})
     values = dict(zip(names, found.tolist()))
     return Fit(
         values,
@@ -243,6 +251,7 @@ def _make_fit(
         residuals[0],
         residuals[1],
         fitted.make_model(values),
+        join_motion(motion),
     )
 
 

@@ -39,6 +39,10 @@ class Horizons:
 
     Attributes
     ----------
+    record : Record
+        Record without rows that follow the previous row too closely.
+    rows : ndarray (count, rows)
+        Compared rows of the record of each piece.
     count : int
         Number of pieces.
     width : int
@@ -71,19 +75,19 @@ class Horizons:
         if not starts:
             raise InputError(f"the log has only {len(pieces)} horizons. Give a shorter horizon.")
         skipped = 0 if make["engine"] == "eigen" else _SETTLED
-        self._rows = [
+        rows = [
             a + 1 + np.flatnonzero(steps[a + 1 : b + 1] - steps[a] > skipped) for a, b in starts
         ]
-        most = int(np.median([len(rows) for rows in self._rows]))
+        most = int(np.median([len(each) for each in rows]))
         if most < 3:
             raise InputError("the log has too few rows per horizon. Give a longer horizon.")
-        keep = [i for i, rows in enumerate(self._rows) if len(rows) >= most]
-        self._rows = [self._rows[i][:most] for i in keep]
+        keep = [i for i, each in enumerate(rows) if len(each) >= most]
+        self.rows = np.array([rows[i][:most] for i in keep])
         self._first = first = np.array([starts[i][0] for i in keep])
         self.count = len(keep)
-        self._offsets = np.array([steps[r] - steps[a] for r, a in zip(self._rows, first)])
+        self._offsets = np.array([steps[r] - steps[a] for r, a in zip(self.rows, first)])
         self._begin = steps[self._first]
-        self._record = record
+        self.record = record
         self._commands, self._command_steps = _make_commands(record, dt, rotors)
         self._angles = _joint_angles(record)
         self.corrections = 12 + self.rotors
@@ -120,7 +124,7 @@ class Horizons:
         threads = 1 if n < _FEW else None
         batch = BatchSimulation(n=n, parameters=given, dt=self._dt, threads=threads, **self._make)
         batch.set_state(self._make_states(starts.reshape(n, self.corrections), groups))
-        rows = np.array(self._rows)
+        rows = self.rows
         state = np.empty((n, batch.state_width))
         states = np.empty((groups, *rows.shape, batch.state_width))
         begin, flown = np.tile(self._begin, groups), 0
@@ -165,7 +169,7 @@ class Horizons:
         return commands
 
     def _make_states(self, corrections: np.ndarray, groups: int) -> np.ndarray:
-        r, rows = self._record, np.tile(self._first, groups)
+        r, rows = self.record, np.tile(self._first, groups)
         turn = corrections[:, 3:6] - r.rates[rows] * self._late[rows, None]
         moved = corrections[:, :3] - r.velocity[rows] * self._late[rows, None]
         return np.hstack(
@@ -181,7 +185,7 @@ class Horizons:
 
     def _compare(self, state: BatchState, rows: np.ndarray) -> np.ndarray:
         """Return simulated minus measured values, for rows that may lie between steps."""
-        r, late = self._record, self._late[rows, None]
+        r, late = self.record, self._late[rows, None]
         parts: Dict[str, Callable[[], np.ndarray]] = {
             "position": lambda: state.position + late * state.linear_velocity - r.position[rows],
             "attitude": lambda: _turn_between(

@@ -27,7 +27,7 @@ from .windows import (
 CONSTANT = "constant velocity and rates"
 _CALIBRATED = 0.3
 """First part of a flight, from which its trims come; the rest is judged."""
-_DECISIVE = 0.25
+DECISIVE = 0.25
 """Horizon at which a model must be better than the baselines, s."""
 _COMPARED = {True: ("position", "attitude"), False: ("rates",)}
 
@@ -64,14 +64,14 @@ class Judgement(NamedTuple):
     def check(self) -> None:
         """Raise `FlightError` if the first model is worse than another row at 0.25 s."""
         model, *baselines = self.errors
-        place = INSTANTS.index(_DECISIVE)
+        place = INSTANTS.index(DECISIVE)
         for channel in _COMPARED["position" in self.windows.states]:
             found = self.errors[model][channel][place]
             for baseline in baselines:
                 other = self.errors[baseline][channel][place]
                 if not found <= other:
                     raise FlightError(
-                        f"{channel} at {_DECISIVE:g} s: the model errs by {found:.3g} "
+                        f"{channel} at {DECISIVE:g} s: the model errs by {found:.3g} "
                         f"{CHANNELS[channel]}, {baseline} by {other:.3g}. Fit other flights or "
                         "other parameters, or add --force."
                     )
@@ -122,7 +122,7 @@ def make_logs(judgement: Judgement) -> List[Tuple[str, Log]]:
     if "position" not in windows.states:
         return []
     own = windows.flight == 0
-    within = [i for i, instant in enumerate(INSTANTS) if instant <= _DECISIVE]
+    within = [i for i, instant in enumerate(INSTANTS) if instant <= DECISIVE]
     time = (windows.start[own, None] + np.array(INSTANTS)[within]).ravel()
     new = np.diff(time, prepend=-np.inf) > 1e-6
     logs = []

@@ -156,8 +156,7 @@ class Problem:
         -------
         ndarray, shape (count * width,)
         """
-        flown = self.horizons.fly([self._name_values(values)], self.starts[None])[0]
-        return self._project(np.nan_to_num(flown, nan=_FAR)).ravel()
+        return self._project(np.nan_to_num(self.compare(values), nan=_FAR)).ravel()
 
     def compute_derivative(self, values: np.ndarray) -> np.ndarray:
         """Return the derivative of the residuals, shape (count * width, parameters)."""
@@ -173,13 +172,18 @@ class Problem:
 
     def correct_starts(self, values: np.ndarray) -> None:
         """Move the starts to minimise the residuals."""
-        flown = self.horizons.fly([self._name_values(values)], self.starts[None])[0]
+        flown = self.compare(values)
         for i, (by_start, left) in enumerate(zip(self._by_starts, flown)):
             weighted = by_start / self._weights[:, None]
             size = np.linalg.norm(weighted, axis=0)
             size = np.where(size > 0, size, 1)
             step = np.linalg.lstsq(weighted / size, left / self._weights, rcond=1e-10)[0] / size
             self.starts[i] -= step
+
+    def compare(self, values: np.ndarray) -> np.ndarray:
+        """Return simulated minus measured values, shape (count, width)."""
+        flown: np.ndarray = self.horizons.fly([self._name_values(values)], self.starts[None])[0]
+        return flown
 
     def learn_noise(self, values: np.ndarray) -> None:
         """Estimate the noise of each channel from the residuals."""

@@ -14,6 +14,7 @@ from ..._core import FlightError, InputError, QuadcoreError
 from ...control import controllers, references
 from ...control.built_in import BuiltInController
 from ...control.gains import Gains
+from ...report.decimation import decimate
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support import rotation
@@ -205,6 +206,10 @@ class Problem:
             controller=plan.controller,
             reference=plan.reference,
         )
+
+    def watch(self, trial: Trial, gains: Mapping[str, float]) -> Log:
+        """Simulate a trial with gains and return its decimated log; raises `QuadcoreError`."""
+        return decimate(self._fly_log(trial, gains))
 
     def list_settings(self) -> Dict[str, Any]:
         """Return the settings of the flights, as plain values."""
