@@ -64,6 +64,20 @@ EXAMPLES = {
         "  --out out/controllers",
         "See [evaluate controllers](../evaluate.md).",
     ),
+    "benchmark": Example(
+        "quadcore benchmark --controller geometric,lqr --vehicle crazyflie --category slow \\\n"
+        "  --out out/part",
+        "Without `--vehicle` and `--category`, it runs the whole benchmark. See "
+        "[the benchmark](../benchmark.md).",
+    ),
+    "measure": Example(
+        "quadcore measure pd=flight.bag --reference circle --controller pd,geometric \\\n"
+        "  --xacro sim_slow:=1 --out out/measured",
+        "The bag is that of a simulated flight, so that both rows of `pd` agree. See "
+        "[measure recorded flights](../measure.md).",
+        before="quadcore run quadrotor --engine eigen --xacro sim_slow:=1 --controller pd \\\n"
+        "  --reference circle --duration 10 --log-every 10 --log flight.bag --quiet",
+    ),
     "sweep": Example(
         "quadcore sweep --controller geometric --reference circle \\\n"
         "  --vary frame.mass=uniform:0.9:1.1 --samples 20 --duration 5 --out out/mass",

@@ -52,9 +52,11 @@ if TYPE_CHECKING:
     from .fmu.export import export_fmu
     from .simulation.flight_plan import FlightPlan
     from .simulation.view import View, view
+    from .studies.benchmark.flights import Benchmark, benchmark
     from .studies.compare.compare import compare
     from .studies.compare.result import Comparison
     from .studies.evaluate.evaluate import Evaluation, evaluate
+    from .studies.evaluate.measure import measure
     from .studies.fit.fit import Fit, fit
     from .studies.sweep.sweep import Sweep, sweep
     from .studies.tune.tune import tune
@@ -65,6 +67,7 @@ __all__ = [
     "AttitudeThrust",
     "BatchSimulation",
     "BatchState",
+    "Benchmark",
     "Comparison",
     "Controller",
     "ControllerName",
@@ -93,6 +96,7 @@ __all__ = [
     "World",
     "WrenchThrust",
     "__version__",
+    "benchmark",
     "cmake_prefix",
     "compare",
     "controllers",
@@ -102,6 +106,7 @@ __all__ = [
     "fit",
     "gains",
     "load_plugin_path",
+    "measure",
     "plugin_folders",
     "read_model",
     "read_world",
@@ -112,16 +117,19 @@ __all__ = [
 ]
 
 _LATE = {
+    "Benchmark": "studies.benchmark.flights",
     "Comparison": "studies.compare.result",
     "Evaluation": "studies.evaluate.evaluate",
     "Fit": "studies.fit.fit",
     "FlightPlan": "simulation.flight_plan",
     "Sweep": "studies.sweep.sweep",
     "View": "simulation.view",
+    "benchmark": "studies.benchmark.flights",
     "compare": "studies.compare.compare",
     "evaluate": "studies.evaluate.evaluate",
     "export_fmu": "fmu.export",
     "fit": "studies.fit.fit",
+    "measure": "studies.evaluate.measure",
     "sweep": "studies.sweep.sweep",
     "tune": "studies.tune.tune",
     "view": "simulation.view",

@@ -15,6 +15,7 @@ from ..simulation.engines import ENGINE, STUDY_ENGINE
 from ..support import interrupts
 from ..support.output_files import printable_name
 from . import (
+    benchmark,
     compare,
     completion,
     convert,
@@ -25,6 +26,7 @@ from . import (
     fit,
     info,
     list_names,
+    measure,
     play,
     plot,
     predict,
@@ -43,6 +45,8 @@ _COMMANDS = (
     validate,
     compare,
     evaluate,
+    benchmark,
+    measure,
     sweep,
     play,
     plot,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Sequence
 
 from .._core import InputError
 from ..simulation.engines import STUDY_ENGINE
@@ -68,11 +68,11 @@ def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
         evaluation = fly_plan(plan, progress, arguments.margins)
     files = write_files(evaluation, not arguments.no_plots)
     if not arguments.quiet:
-        _show(evaluation, files)
+        show(evaluation, files)
     report_failures(
         [row["failure"] for row in evaluation.table],
         sum(outcome.refused for outcome in evaluation.outcomes),
-        lambda i: _name_flight(evaluation.table[i]),
+        lambda i: name_flight(evaluation.table[i]),
     )
 
 
@@ -92,7 +92,8 @@ def _make_plan(arguments: argparse.Namespace) -> Plan:
     )
 
 
-def _show(evaluation: Evaluation, files: list[Path]) -> None:
+def show(evaluation: Evaluation, files: list[Path], notes: Sequence[str] = ()) -> None:
+    """Print the tables and notes of an evaluation, and the names of its files."""
     from ..studies.evaluate.output import list_notes, list_unstable_axes, summarise
     from ..studies.evaluate.summary_table import choose_columns, format_rows
 
@@ -107,7 +108,7 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
         console.print("", _make_margin_table(evaluation))
     if len(lines) > _ROWS:
         console.print(f"{len(lines) - _ROWS} more combinations")
-    for note in list_notes(evaluation):
+    for note in [*notes, *list_notes(evaluation)]:
         console.print(note)
     for cause in list_unstable_axes(evaluation):
         console.print(f"unstable: {cause}")
@@ -131,5 +132,6 @@ def _make_margin_table(evaluation: Evaluation) -> Any:
     return table
 
 
-def _name_flight(row: dict[str, Any]) -> str:
+def name_flight(row: dict[str, Any]) -> str:
+    """Name a flight by its row of the table."""
     return f"{row['controller']} on {row['reference']} in {row['engine']}, seed {row['seed']}"

@@ -182,12 +182,7 @@ def add_combined(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file", metavar="FILE.yaml", nargs="?", type=Path, help="same as --options FILE.yaml"
     )
-    controller = find_group(parser, CONTROLLER).add_argument(
-        "--controller",
-        metavar="A,B",
-        type=parse.several_calls,
-        help=f"controllers: {_CONTROLLERS}",
-    )
+    add_controllers(parser, "controllers")
     reference = find_group(parser, CONTROLLER).add_argument(
         "--reference",
         metavar="A,B",
@@ -202,8 +197,26 @@ def add_combined(parser: argparse.ArgumentParser) -> None:
         default=["quadrotor"],
         help="URDF or xacro files, or built-in models (default: quadrotor)",
     )
-    complete_from(controller, controllers.NAMES)
     complete_from(reference, references.NAMES)
+    complete_from(model, list(resources.list_shipped("urdf")))
+
+
+def add_controllers(parser: argparse.ArgumentParser, meaning: str) -> None:
+    """Add the option of several controllers."""
+    action = find_group(parser, CONTROLLER).add_argument(
+        "--controller",
+        metavar="A,B",
+        type=parse.several_calls,
+        help=f"{meaning}: {_CONTROLLERS}",
+    )
+    complete_from(action, controllers.NAMES)
+
+
+def add_model_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option of one vehicle."""
+    model = find_group(parser, VEHICLE).add_argument(
+        "--model", metavar="MODEL", default="quadrotor", help=f"{MODEL} (default: quadrotor)"
+    )
     complete_from(model, list(resources.list_shipped("urdf")))
 
 

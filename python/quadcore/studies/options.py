@@ -216,6 +216,21 @@ class EvaluateOptions(Options):
 
 
 @dataclass(frozen=True)
+class MeasureOptions(Options):
+    """Options of `measure`."""
+
+    duration: Optional[float] = field(  # type: ignore[assignment]
+        default=None,
+        metadata=change_option(
+            "duration",
+            meaning="time after which rows of the logs are left out, in seconds",
+            kind=arguments.or_none(arguments.SECONDS),
+            without="that of the longest log",
+        ),
+    )
+
+
+@dataclass(frozen=True)
 class CompareOptions(Options):
     """Options of `compare`."""
 

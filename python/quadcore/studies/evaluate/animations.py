@@ -24,7 +24,7 @@ def make_animations(evaluation: Evaluation, plan: Plan) -> List[Dict[str, Any]]:
             for label, outcome, style, _ in flights
             if outcome.log is not None
         ]
-        plans = [plan.make_plan_without_controller(plan[flight.row]) for flight in flights]
+        plans = [plan.make_plan_of_row(flight.row) for flight in flights]
         world = join_worlds([draw_world(flown.world) for flown in plans])
         name = name_group(evaluation, reference, scenario)
         animations.append({"name": name, "player": make_section(shown, world)})
@@ -40,7 +40,7 @@ def write_drawn_flights(evaluation: Evaluation, plan: Plan, folder: Path) -> Lis
             if outcome.log is None:
                 continue
             logs.append(outcome.log)
-            flown = plan.make_plan_without_controller(plan[row])
+            flown = plan.make_plan_of_row(row)
             listed.append(
                 WrittenFlight(
                     f"{name_group(evaluation, reference, scenario)}: {label}",

@@ -42,7 +42,8 @@ def mark_best(groups: Sequence[Dict[str, Any]], flights: Sequence[Sequence[float
         groups[best]["is_best"] = True
         for row in rows:
             if row != best:
-                differences = np.subtract(flights[row], flights[best])
+                # Recorded flights may be of different numbers.
+                differences = np.array([a - b for a, b in zip(flights[row], flights[best])])
                 differences = differences[np.isfinite(differences)]
                 compared.append(row)
                 p_values.append(compute_p_value(differences))

@@ -154,12 +154,24 @@ def evaluate(
 def fly_plan(plan: Plan, progress: Optional[Progress] = None, margins: bool = False) -> Evaluation:
     """Simulate all flights of a plan; parameters as for `evaluate`."""
     flights = _Flights(plan, progress, margins)
+    poles = _compute_poles(plan)
+    try:
+        flights.fly(_pick_drawn(plan))
+    except KeyboardInterrupt as stop:
+        stop.evaluation = flights.make_evaluation(poles)  # type: ignore[attr-defined]
+        raise
+    return flights.make_evaluation(poles)
+
+
+def fly_outcomes(plan: Plan, progress: Optional[Progress] = None) -> List[Outcome]:
+    """Simulate all flights of a plan, without logs; an interrupt has the attribute `outcomes`."""
+    flights = _Flights(plan, progress, margins=False)
     try:
         flights.fly()
     except KeyboardInterrupt as stop:
-        stop.evaluation = flights.make_evaluation()  # type: ignore[attr-defined]
+        stop.outcomes = flights.outcomes  # type: ignore[attr-defined]
         raise
-    return flights.make_evaluation()
+    return flights.outcomes
 
 
 class _Flights:
@@ -167,27 +179,25 @@ class _Flights:
 
     def __init__(self, plan: Plan, progress: Optional[Progress], margins: bool) -> None:
         self._plan, self._progress = plan, progress
-        self._outcomes = [Outcome()] * len(plan)
+        self.outcomes = [Outcome()] * len(plan)
         self._done = 0
         self._searches: Optional[MarginSearch] = None
         if margins:
             self._searches = MarginSearch(plan.control.controllers, plan.lacking)
             if plan.omitted_margins:
                 warn(plan.omitted_margins)
-        self._poles = _compute_poles(plan)
 
-    def fly(self) -> None:
+    def fly(self, drawn: Collection[int] = ()) -> None:
         """Simulate all cases, then the trials of the margin search."""
         plan = self._plan
-        drawn = _pick_drawn(plan)
         flights = [partial(plan.make_plan, case) for case in plan]
-        self._fly_all(flights, self._outcomes, self._group(range(len(plan)), drawn), drawn)
+        self._fly_all(flights, self.outcomes, self._group(range(len(plan)), drawn), drawn)
         if self._searches is not None:
             self._searches.run(self._fly_trials)
 
-    def make_evaluation(self) -> Evaluation:
+    def make_evaluation(self, poles: List[Dict[str, Any]]) -> Evaluation:
         """Summarise the flights so far."""
-        plan, outcomes = self._plan, self._outcomes
+        plan, outcomes = self._plan, self.outcomes
         names = [plan.name_case(case) for case in plan]
         return Evaluation(
             [
@@ -196,7 +206,7 @@ class _Flights:
             ],
             summarise_seeds([case[:-1] for case in plan], names, outcomes),
             [] if self._searches is None else self._searches.list_rows(),
-            self._poles,
+            poles,
             outcomes,
         )
 

@@ -114,7 +114,7 @@ def _list_settings(plan: Plan) -> List[Dict[str, str]]:
     return rows
 
 
-def _list_controllers(plan: Plan) -> List[Dict[str, Any]]:
+def list_controllers(plan: Plan) -> List[Dict[str, Any]]:
     """List all parameters of each built-in controller."""
     return [
         {
@@ -177,7 +177,7 @@ def _make_content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
         "quadcore": __version__,
         "numpy": np.__version__,
         "plan": plan.describe(),
-        "laws": _list_controllers(plan),
+        "laws": list_controllers(plan),
         "units": UNITS,
         "meanings": MEANINGS,
         "confidence": CONFIDENCE,
@@ -238,7 +238,7 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
     ]
     lines = format_rows(evaluation)
     return {
-        "title": "Evaluation of controllers",
+        "title": plan.title,
         "summary": summarise(evaluation),
         "verdicts": describe_best(evaluation.groups),
         "overview": make_overview(evaluation.groups),
@@ -246,7 +246,7 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
         "shown": choose_columns(lines),
         "lines": lines[:ROWS_OF_PAGE],
         "more": max(0, len(evaluation.groups) - ROWS_OF_PAGE),
-        "notes": list_notes(evaluation),
+        "notes": [*plan.notes, *list_notes(evaluation)],
         "failures": failures[:ROWS_OF_PAGE],
         "confidence": f"{100 * CONFIDENCE:g} %",
         "meanings": MEANINGS,

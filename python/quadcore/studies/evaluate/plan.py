@@ -32,6 +32,11 @@ class Plan(Cases):
         If an input is invalid. Errors of user-defined controllers only fail their flights.
     """
 
+    title = "Evaluation of controllers"
+    """Title of the page."""
+    notes: Sequence[str] = ()
+    """Remarks for the terminal and the page, a line for each."""
+
     def __init__(
         self,
         controllers: Controllers,
@@ -67,6 +72,10 @@ class Plan(Cases):
             "scenario": self.scenarios[case.point],
             "seed": self.seeds[case.seed],
         }
+
+    def make_plan_of_row(self, row: int) -> FlightPlan:
+        """Make the plan of the flight in a row of the table, without its controller."""
+        return self.make_plan_without_controller(self[row])
 
     def list_built_in_flights(self) -> Iterator[Tuple[Dict[str, str], FlightPlan]]:
         """Yield names and a flight for each built-in controller on each model.

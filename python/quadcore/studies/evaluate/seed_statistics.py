@@ -26,7 +26,8 @@ def summarise_seeds(
     Parameters
     ----------
     groups
-        Combination of each flight; the index of the controller is first.
+        Combination of each flight; the index of the controller is first. Others are compared with
+        the first controller of the same combination.
     names
         Names of each flight.
     outcomes
@@ -42,10 +43,13 @@ def summarise_seeds(
     for group, name, outcome in zip(groups, names, outcomes):
         flights.setdefault(group, []).append(outcome)
         named.setdefault(group, name)
+    firsts: Dict[Tuple[int, ...], List[Outcome]] = {}
+    for group, some in flights.items():
+        firsts.setdefault(group[1:], some)
     rows = [
         {
             **{name: value for name, value in named[group].items() if name != "seed"},
-            **_summarise(some, flights[(0, *group[1:])]),
+            **_summarise(some, firsts[group[1:]]),
         }
         for group, some in flights.items()
     ]

@@ -1,0 +1,5 @@
+"""The benchmark: a fixed, versioned set of flights that controllers are compared by.
+
+`definition` reads a version, `flights` simulates it, `scores` summarises the categories, `record`
+describes controllers and machine, and `output` writes the files.
+"""
