@@ -148,7 +148,22 @@ def _make_plant(**options: Any) -> Simulation:
     return Plant(**options)
 
 
+def _is_stack_file(path: str) -> bool:
+    with LOCK:
+        from .autopilots.stack_file import is_stack_file  # yaml is slow to import
+
+    return is_stack_file(path)
+
+
+def _read_autopilot(path: str) -> Any:
+    with LOCK:
+        from .autopilots.stacks import read_autopilot
+
+    return read_autopilot(path)
+
+
 add_engine(LAGRANGE, AddedEngine(LAGRANGE_SUMMARY, _make_plant))
+controllers.add_reader(controllers.FileReader(_is_stack_file, _read_autopilot))
 
 
 if not TYPE_CHECKING:  # checkers would accept any name

@@ -20,6 +20,7 @@ SLOW = [
 
 PACKAGE = Path(qc.__file__).parent
 PACKAGES = {
+    "autopilots": {"Autopilot", "Betaflight", "Readings", "Sticks", "read_autopilot"},
     "gym": {"Env", "NAME", "OBSERVATIONS", "REWARDS", "VectorEnv"},
     "serve": {"Client", "Server", "ServerError"},
     "fmu": {"export_fmu"},

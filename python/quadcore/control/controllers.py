@@ -6,7 +6,18 @@ docstring lists the parameters. ``NAMES`` contains all names. `read_controller` 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+)
 
 from .. import _core
 from ..support.parameters import make_signature, read_values, suggest, write_docstring
@@ -46,6 +57,9 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
     QuadcoreWarning
         If the gains of the file belong to another vehicle.
     """
+    added = _find_added_reader(text)
+    if added is not None:
+        return _set_all(added.make(text), values or {})
     if names_gains_file(text):
         read = gains.read(text)
         if vehicle and read.vehicle not in ("", vehicle):
@@ -69,8 +83,40 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
     )
 
 
+class FileReader(NamedTuple):
+    """Reader of YAML files that describe controllers other than gains files do."""
+
+    reads: Callable[[str], bool]
+    """Whether it reads a file."""
+    make: Callable[[str], Any]
+    """Makes the controller of a file."""
+
+
+_ADDED: List[FileReader] = []
+
+
+def add_reader(reader: FileReader) -> None:
+    """Add a reader of files for `parse`."""
+    _ADDED.append(reader)
+
+
+def _find_added_reader(text: str) -> Optional[FileReader]:
+    if not _names_yaml(text):
+        return None
+    return next((reader for reader in _ADDED if reader.reads(text)), None)
+
+
+def names_added_file(text: str) -> bool:
+    """Whether a text names a file that an added reader reads."""
+    return _find_added_reader(text) is not None
+
+
 def names_gains_file(text: str) -> bool:
     """Whether a text names a gains file."""
+    return _names_yaml(text) and not names_added_file(text)
+
+
+def _names_yaml(text: str) -> bool:
     return text.lower().endswith((".yaml", ".yml"))
 
 
@@ -91,7 +137,14 @@ def read_own(text: str) -> Gains:
     ----------
     text
         As for `parse`.
+
+    Raises
+    ------
+    InputError
+        As for `parse`, and if the text names an autopilot.
     """
+    if names_added_file(text):
+        raise _core.InputError(f"{text}: this controller has no gains to tune. Name another.")
     name, given = split_own(text)
     defaults: Dict[str, float] = {}
     find_controller(name, lambda found: defaults.update(list_parameters(found)) or found)

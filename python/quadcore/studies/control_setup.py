@@ -180,6 +180,8 @@ def names_user_code(thing: Any) -> bool:
     """Whether a text names a user-defined controller."""
     if not isinstance(thing, str):
         return False
+    if controllers.names_added_file(thing):
+        return True
     if controllers.names_gains_file(thing):
         return gains.read(thing).law not in controllers.NAMES
     return names_file(thing) or (":" in thing and thing.partition(":")[0] not in controllers.NAMES)

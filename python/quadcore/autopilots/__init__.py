@@ -1,0 +1,13 @@
+"""Bridges to autopilots: programs outside quadcore that fly the vehicle in lockstep.
+
+A stack file (YAML) describes an autopilot; `read_autopilot` makes a controller from it. `Autopilot`
+is the base class of bridges to other stacks.
+"""
+
+from .autopilot import Autopilot
+from .betaflight.betaflight import Betaflight
+from .readings import Readings
+from .stacks import read_autopilot
+from .sticks import Sticks
+
+__all__ = ["Autopilot", "Betaflight", "Readings", "Sticks", "read_autopilot"]

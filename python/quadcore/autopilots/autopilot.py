@@ -1,0 +1,177 @@
+"""Base class of bridges to autopilots."""
+
+from __future__ import annotations
+
+from typing import Any, List, Sequence
+
+import numpy as np
+
+from .._core import FlightError, InputError
+from ..control.vehicle import Vehicle, unwrap
+from .motor_curve import CurveLike, MotorCurve
+from .readings import Readings, Sensors
+from .rotor_map import Channel, Place, check_reaction, map_channels
+
+
+class Autopilot:
+    """Controller that asks a program outside quadcore, in lockstep.
+
+    A bridge to another stack defines `layout`, `start`, `tick`, `pilot` and `close`. A flight calls
+    them in this order: `start`; `pilot` and `tick` in every tick of the phase before the flight and
+    of the flight; `close`.
+
+    In the phase before the flight, the vehicle is held still in its initial pose, and t counts
+    from ``-hold`` to 0. Autopilots need this time to start, calibrate and arm. It is not part of
+    the log, and the simulation does not move.
+
+    Parameters
+    ----------
+    motor_curve : {"speed", "thrust"} or sequence of pairs, default "speed"
+        Rotor speed by output; see `MotorCurve`.
+    rotors : sequence of str, default ()
+        Joints of the rotors in the order of the outputs. Default: by position and spin.
+    imu : str, default ""
+        Topic of the IMU. Default: ideal readings of the state.
+    hold : float, default 0
+        Duration of the phase before the flight, s.
+
+    Attributes
+    ----------
+    rate : float
+        Ticks per simulated second, 1/s.
+    fixed_rate : bool
+        True, because the program counts ticks as time.
+    channels : sequence of Channel
+        Outputs and their rotors, from the first reset on.
+    curve : MotorCurve
+        Motor curve, from the first reset on.
+    period : float
+        Time between ticks, s, from the first reset on.
+    """
+
+    pilot_rate = 100.0
+    """Calls of `pilot` per simulated second, 1/s; its result holds until the next call."""
+
+    layout: Sequence[Place] = ()
+    """Places of the motors in the order of the outputs."""
+
+    rate: float = 1000.0
+    fixed_rate = True
+    delay: float = 0.0
+
+    def __init__(
+        self,
+        *,
+        motor_curve: CurveLike = "speed",
+        rotors: Sequence[str] = (),
+        imu: str = "",
+        hold: float = 0.0,
+    ) -> None:
+        self.motor_curve, self.rotors, self.imu = motor_curve, tuple(rotors), imu
+        self.hold = hold
+        self.channels: List[Channel] = []
+
+    def start(self, vehicle: Vehicle) -> None:
+        """Start the program and connect to it.
+
+        Parameters
+        ----------
+        vehicle : Vehicle
+            Vehicle that the autopilot is to fly.
+        """
+        raise NotImplementedError
+
+    def tick(self, readings: Readings, sticks: Any) -> Sequence[float]:
+        """Send readings and sticks, wait for the answer, and return the outputs from 0 to 1.
+
+        Parameters
+        ----------
+        readings : Readings
+            Readings of the sensors.
+        sticks : object
+            Result of `pilot`.
+        """
+        raise NotImplementedError
+
+    def pilot(self, t: float, state: Any, reference: Any) -> Any:
+        """Return what the pilot gives to the autopilot, such as the positions of the sticks.
+
+        Parameters
+        ----------
+        t : float
+            Time, s; negative before the flight.
+        state : Odometry or None
+            Latest odometry; None before the flight.
+        reference : Reference or None
+            Value of the reference; None before the flight, or if there is no reference.
+        """
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """End the program, and remove its files; called after every flight."""
+
+    def reset(self, simulation: Any) -> None:
+        """Start the autopilot, and hold the vehicle until it is ready."""
+        simulation = unwrap(simulation)
+        self.prepare(simulation)
+        self.start(simulation.vehicle)
+        self._sensors = Sensors(simulation, self.imu)
+        held = self._sensors.read(simulation.time)
+        self._sensors = Sensors(simulation, self.imu)
+        every = max(1, round(1 / (self.pilot_rate * self.period)))
+        self._pilot_every, self._ticks = every, 0
+        for k in range(round(self.hold / self.period), 0, -1):
+            t = -k * self.period
+            self._ask(held.at_rest(t, self._sensors.gravity), None, None)
+        self._begin, self._ticks = simulation.time, 0
+
+    def prepare(self, simulation: Any) -> None:
+        """Map the channels to the rotors of a simulation, and read its motor curve.
+
+        Raises
+        ------
+        InputError
+            If the vehicle does not fit the autopilot.
+        """
+        by_command = sorted(
+            (rotor for rotor in simulation.rotors if rotor.command_index is not None),
+            key=lambda rotor: int(rotor.command_index),
+        )
+        check_reaction(by_command, simulation.model.name)
+        self.channels = map_channels(self.layout, by_command, self.rotors)
+        self.period = max(1 / self.rate, simulation.dt)
+        driven = [channel.rotor for channel in self.channels]
+        self.curve = MotorCurve(self.motor_curve, np.array([rotor.max_speed for rotor in driven]))
+        self._order = np.array([rotor.command_index for rotor in driven])
+        self._signs = np.sign(simulation.hover_speed)[self._order]
+
+    def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
+        """Return the rotor speeds that the autopilot commands, rad/s."""
+        elapsed = t - self._begin
+        outputs = self._ask(self._sensors.read(elapsed), state, reference)
+        speeds = np.empty(len(self._order))
+        speeds[self._order] = self._signs * self.curve.find_speeds(outputs)
+        return speeds
+
+    def _ask(self, readings: Readings, state: Any, reference: Any) -> np.ndarray:
+        if self._ticks % self._pilot_every == 0:
+            self._sticks_held = self.pilot(readings.time, state, reference)
+        self._ticks += 1
+        outputs = np.asarray(self.tick(readings, self._sticks_held), dtype=float)
+        if outputs.shape != (len(self.channels),) or not np.all(np.isfinite(outputs)):
+            raise self.fail(readings.time, f"the autopilot answered with outputs {outputs}")
+        return outputs
+
+    def fail(self, t: float, reason: str) -> FlightError:
+        """Make the error that ends a flight at a time (s) for a reason."""
+        when = f"at t = {t:f} s" if t >= 0 else f"{-t:.3f} s before the flight"
+        error = FlightError(f"the flight failed {when}: {reason}")
+        error.time = max(t, 0.0)
+        return error
+
+
+def check_hold(where: str, hold: float) -> float:
+    """Return the duration of the phase before the flight; raises `InputError` if it is wrong."""
+    if 0 <= hold <= 600:
+        return hold
+    raise InputError(f"{where}hold is {hold:g}. Give seconds, from 0 to 600.")

@@ -1,0 +1,1 @@
+"""Bridge to Betaflight's SITL (software in the loop) program."""

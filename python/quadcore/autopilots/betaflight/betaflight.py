@@ -1,0 +1,182 @@
+"""Bridge to Betaflight's SITL program."""
+
+from __future__ import annotations
+
+import math
+import socket
+from typing import Any, Callable, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ..._core import InputError
+from ...control.vehicle import Vehicle
+from ..autopilot import Autopilot
+from ..exchange import Exchange, check_free, find_free_port
+from ..program import Program
+from ..readings import Readings
+from ..rotor_map import Place
+from ..sticks import StickPilot, Sticks
+from . import frames
+from .packets import Ports, pack_radio, pack_state, read_motors
+from .parameters import COMMANDS, DEFAULTS, IDLE, MAX_ANGLE, MAX_YAW_RATE, write_parameters
+
+_ARM, _SPIN_UP = 1.5, 0.3  # s before the flight
+_DISARMED = 0.1  # s without output after which an armed autopilot counts as disarmed
+
+OwnPilot = Callable[[float, Any, Any], Sticks]
+
+
+class Betaflight(Autopilot):
+    """Controller that flies an unmodified Betaflight SITL program.
+
+    Parameters
+    ----------
+    program : str
+        Betaflight's program.
+    arguments : sequence of str, default ()
+        Arguments of the program. ``{motors}``, ``{state}``, ``{radio}`` and ``{msp}`` stand for
+        free ports. Without them, Betaflight's fixed ports are used, so that one flight runs at a
+        time.
+    parameters : mapping of str to str, default {}
+        Parameters of Betaflight by name, which are set before the flight and read back.
+    commands : sequence of str, default ()
+        Other lines of Betaflight's command line, such as ``aux 2 ...``.
+    pilot : callable, optional
+        Function ``pilot(t, state, reference)`` that returns `Sticks`. Default: a pilot that follows
+        the reference in the level mode.
+    hold : float, default 8
+        Duration of the phase before the flight, s. Betaflight arms 1.5 s before its end.
+    motor_curve, rotors, imu
+        As for `Autopilot`.
+    where : mapping of str to str, default {}
+        ``FILE:LINE: `` of the values in a stack file, by name, for messages.
+    """
+
+    # motors 1 to 4 of the mixer QUADX, src/main/flight/mixer_init.c
+    layout = (Place(-1, -1, -1), Place(1, -1, 1), Place(-1, 1, 1), Place(1, 1, -1))
+
+    def __init__(
+        self,
+        program: str,
+        arguments: Sequence[str] = (),
+        parameters: Optional[Mapping[str, str]] = None,
+        commands: Sequence[str] = (),
+        pilot: Optional[OwnPilot] = None,
+        hold: float = 8.0,
+        where: Optional[Mapping[str, str]] = None,
+        **others: Any,
+    ) -> None:
+        super().__init__(hold=hold, **others)
+        self._command = [program, *arguments]
+        self._parameters = {**DEFAULTS, **(parameters or {})}
+        self._lines = [*COMMANDS, *commands]
+        self._own_pilot = pilot
+        self._where = where or {}
+        self._program: Optional[Program] = None
+        self._exchange: Optional[Exchange] = None
+        self._pilot: Optional[StickPilot] = None
+        self.summary = ""
+        if hold < _ARM:
+            raise InputError(
+                f"{self._where.get('hold', '')}hold is {hold:g}, but Betaflight arms {_ARM:g} s "
+                "before the flight. Give more."
+            )
+
+    def start(self, vehicle: Vehicle) -> None:
+        """Write the parameters and start the program."""
+        self._vehicle = vehicle
+        self._pilot = StickPilot(
+            vehicle,
+            self.curve,
+            1 / self.pilot_rate,
+            math.radians(MAX_ANGLE),
+            math.radians(MAX_YAW_RATE),
+            IDLE,
+        )
+        self._program = Program()
+        ports, command = self._choose_ports()
+        self._exchange = Exchange(self._program, ports.motors)
+        self.ports = ports._replace(motors=self._exchange.port)
+        command = [part.replace("{motors}", str(self.ports.motors)) for part in command]
+        write_parameters(self._program, command, self._parameters, self._lines, self._where)
+        self._program.start(command, {})
+        self._first: Optional[np.ndarray] = None
+        self._sticks: Optional[Sticks] = None
+        self._off_since: Optional[float] = None
+
+    def tick(self, readings: Readings, sticks: Sticks) -> Sequence[float]:
+        """Send the radio's channels and the state, and wait for the outputs."""
+        assert self._exchange is not None
+        if self._first is None:
+            self._first = readings.position
+        time = readings.time + self.hold
+        if sticks is not self._sticks:
+            self._sticks = sticks
+            self._exchange.send(pack_radio(time, sticks), self.ports.radio)
+        fields = frames.convert_readings(readings, self._first, frames.Place())
+        answer = self._exchange.ask(
+            pack_state(time, fields),
+            self.ports.state,
+            lambda reason: self.fail(readings.time, reason),
+        )
+        outputs, problem = read_motors(answer)
+        if outputs is None:
+            raise self.fail(readings.time, problem)
+        self._check_armed(readings.time, outputs)
+        return [max(0.0, min(1.0, output)) for output in outputs]
+
+    def pilot(self, t: float, state: Any, reference: Any) -> Sticks:
+        """Arm before the flight, then follow the reference."""
+        assert self._pilot is not None
+        if t < -_ARM:
+            return Sticks()
+        if t < -_SPIN_UP:
+            return Sticks(is_armed=True)
+        if t < 0:
+            return self._pilot.hover
+        if self._own_pilot is not None:
+            return self._own_pilot(t, state, reference)
+        if reference is None:
+            raise InputError("The pilot of an autopilot needs a reference. Add --reference hover.")
+        return self._pilot.fly(state, reference)
+
+    def close(self) -> None:
+        """End the program, and remove its folder."""
+        if self._exchange is not None:
+            self.summary = self._exchange.summarize()
+            self._exchange.close()
+            self._exchange = None
+        if self._program is not None:
+            self._program.stop()
+            self._program = None
+
+    def _choose_ports(self) -> Tuple[Ports, List[str]]:
+        """Return the ports, and the command with those of the autopilot."""
+        text = " ".join(self._command)
+        if not any(f"{{{name}}}" in text for name in Ports._fields):
+            ports = Ports()
+            for port in (ports.state, ports.radio):
+                check_free(socket.SOCK_DGRAM, port)
+            check_free(socket.SOCK_STREAM, ports.msp)
+            return ports, self._command
+        udp, tcp = socket.SOCK_DGRAM, socket.SOCK_STREAM
+        ports = Ports(0, find_free_port(udp), find_free_port(udp), find_free_port(tcp))
+        command = list(self._command)
+        for name in ("state", "radio", "msp"):
+            command = [part.replace(f"{{{name}}}", str(getattr(ports, name))) for part in command]
+        return ports, command
+
+    def _check_armed(self, t: float, outputs: Sequence[float]) -> None:
+        """Raise `FlightError` if the autopilot is not armed in flight."""
+        assert self._program is not None and self._sticks is not None
+        if t < 0 or not self._sticks.is_armed or max(outputs) > IDLE / 2:
+            self._off_since = None
+            return
+        if self._off_since is None:
+            self._off_since = t
+        if t == 0:
+            raise self.fail(t, f"the autopilot did not arm. {self._program.describe_messages()}")
+        if t - self._off_since >= _DISARMED:
+            raise self.fail(
+                self._off_since, f"the autopilot disarmed. {self._program.describe_messages()}"
+            )

@@ -1,0 +1,157 @@
+"""Stop-and-wait exchange of datagrams with an autopilot on this machine."""
+
+from __future__ import annotations
+
+import select
+import socket
+import time
+from typing import Callable, List
+
+import numpy as np
+
+from .._core import InputError
+from ..support.warning import warn
+from .program import Program
+
+HOST = "127.0.0.1"
+
+_AGAIN = 0.25  # s; without an answer for so long, the question is asked again
+_PATIENCE = 2.0  # s; after that a warning tells that quadcore waits
+_SETTLE = 0.02  # s; answers to a repeated question that come later are discarded
+
+
+class Exchange:
+    """UDP socket that asks and waits for the answer, as long as the other program lives.
+
+    Parameters
+    ----------
+    program : Program
+        Program that answers.
+    port : int
+        Port to which the program sends its answers; 0: any free port.
+
+    Attributes
+    ----------
+    durations : list of float
+        Time until each answer, s.
+    repeated : int
+        Number of questions that were asked again.
+
+    Raises
+    ------
+    InputError
+        If the port is taken.
+    """
+
+    def __init__(self, program: Program, port: int) -> None:
+        self._program = program
+        self.durations: List[float] = []
+        self.repeated = 0
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.bind((HOST, port))
+        except OSError as error:
+            self._socket.close()
+            raise describe_taken("UDP", port, error) from error
+        self._socket.setblocking(False)
+        self._poll = select.poll()
+        self._poll.register(self._socket, select.POLLIN)
+
+    @property
+    def port(self) -> int:
+        """Port to which the program sends its answers."""
+        return int(self._socket.getsockname()[1])
+
+    def send(self, packet: bytes, port: int) -> None:
+        """Send a packet that is not answered."""
+        self._socket.sendto(packet, (HOST, port))
+
+    def ask(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> bytes:
+        """Send a packet and return the answer.
+
+        Parameters
+        ----------
+        packet
+            Question; asked again if there is no answer.
+        port
+            Port of the program.
+        fail
+            Makes the error if the program ends.
+        """
+        began = asked = time.perf_counter()
+        repeated, has_warned = False, False
+        self._socket.sendto(packet, (HOST, port))
+        while not self._poll.poll(_AGAIN * 1000):
+            self._program.read_messages()
+            if self._program.has_ended():
+                raise fail(self._program.describe_end())
+            now = time.perf_counter()
+            if now - began > _PATIENCE and not has_warned:
+                warn(
+                    f"The autopilot has not answered for {_PATIENCE:g} s. quadcore waits for it. "
+                    f"{self._program.describe_messages()}"
+                )
+                has_warned = True
+            if now - asked >= _AGAIN:
+                self._socket.sendto(packet, (HOST, port))
+                self.repeated += 1
+                repeated, asked = True, now
+        answer = self._socket.recv(65536)
+        self.durations.append(time.perf_counter() - began)
+        if repeated:
+            self.discard()
+        return answer
+
+    def discard(self) -> None:
+        """Discard answers that arrive within a short time."""
+        while self._poll.poll(_SETTLE * 1000):
+            self._socket.recv(65536)
+
+    def summarize(self) -> str:
+        """Describe the answers in one line."""
+        if not self.durations:
+            return "no answers"
+        median, slow = np.quantile(self.durations, [0.5, 0.99]) * 1e6
+        return (
+            f"{len(self.durations)} answers, median {median:.0f} us, 99 % within {slow:.0f} us, "
+            f"{self.repeated} questions repeated"
+        )
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._socket.close()
+
+
+def check_free(kind: int, port: int) -> None:
+    """Raise `InputError` if another program listens on a port of this machine.
+
+    Parameters
+    ----------
+    kind
+        ``socket.SOCK_DGRAM`` for UDP, ``socket.SOCK_STREAM`` for TCP.
+    port
+        Port.
+    """
+    with socket.socket(socket.AF_INET, kind) as probe:
+        if kind == socket.SOCK_STREAM:  # earlier connections may still linger
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((HOST, port))
+        except OSError as error:
+            name = "TCP" if kind == socket.SOCK_STREAM else "UDP"
+            raise describe_taken(name, port, error) from error
+
+
+def find_free_port(kind: int) -> int:
+    """Return a port of this machine that is free now."""
+    with socket.socket(socket.AF_INET, kind) as probe:
+        probe.bind((HOST, 0))
+        return int(probe.getsockname()[1])
+
+
+def describe_taken(kind: str, port: int, error: OSError) -> InputError:
+    """Make the error of a port that is taken."""
+    return InputError(
+        f"{kind} port {port}: {error.strerror or error}. End the other autopilot or simulator, or "
+        "run one flight at a time (--jobs 1)."
+    )

@@ -1,0 +1,73 @@
+"""Motor curve: rotor speed as a function of an autopilot's output."""
+
+from __future__ import annotations
+
+from typing import Sequence, Tuple, Union
+
+import numpy as np
+
+from .._core import InputError
+from ..support.arguments import shorten
+
+KINDS = ("speed", "thrust")
+"""Curves by name."""
+
+CurveLike = Union[str, Sequence[Tuple[float, float]]]
+
+
+class MotorCurve:
+    """Rotor speeds of outputs from 0 to 1.
+
+    Parameters
+    ----------
+    curve : {"speed", "thrust"} or sequence of pairs
+        "speed": the speed is proportional to the output; "thrust": the thrust is, so that the speed
+        grows with the square root. Pairs of output and rotor speed (rad/s) are joined by lines.
+    max_speeds : ndarray (n,)
+        Speed of each rotor at full output, rad/s; pairs do not use it.
+
+    Raises
+    ------
+    InputError
+        If the curve is not valid, or needs a maximum speed that the motors do not have.
+    """
+
+    def __init__(self, curve: CurveLike, max_speeds: np.ndarray) -> None:
+        self._table = None if isinstance(curve, str) else check_pairs(curve)
+        self._exponent = 0.5 if curve == "thrust" else 1.0
+        self._max_speeds = np.asarray(max_speeds, dtype=float)
+        if isinstance(curve, str) and curve not in KINDS:
+            raise InputError(
+                f"motor_curve is {shorten(curve)}. Give speed, thrust, or [[output, rad/s], ...]."
+            )
+        if self._table is None and not np.all(np.isfinite(self._max_speeds)):
+            raise InputError(
+                f"motor_curve '{curve}' needs the maximum speed of the motors, which is unlimited. "
+                "Give [[0, 0], [1, rad/s]]."
+            )
+
+    def find_speeds(self, outputs: np.ndarray) -> np.ndarray:
+        """Return the speeds for the outputs of n motors, rad/s; shape (n,)."""
+        if self._table is not None:
+            return np.asarray(np.interp(outputs, *self._table))
+        return np.asarray(self._max_speeds * np.clip(outputs, 0, 1) ** self._exponent)
+
+    def find_outputs(self, speeds: np.ndarray) -> np.ndarray:
+        """Return the outputs at which n motors turn at some speeds (rad/s); shape (n,)."""
+        if self._table is not None:
+            return np.asarray(np.interp(speeds, self._table[1], self._table[0]))
+        return np.asarray(np.clip(speeds / self._max_speeds, 0, 1) ** (1 / self._exponent))
+
+
+def check_pairs(curve: object) -> np.ndarray:
+    """Return outputs and speeds of a curve, shape (2, rows); raises `InputError` if it is wrong."""
+    try:
+        table = np.array(curve, dtype=float).T
+    except (TypeError, ValueError):
+        table = np.empty(0)
+    has_shape = table.ndim == 2 and table.shape[0] == 2 and table.shape[1] >= 2
+    if not (has_shape and np.all(np.isfinite(table)) and np.all(np.diff(table) > 0)):
+        raise InputError(
+            f"motor_curve is {shorten(curve)}. Give two or more pairs [output, rad/s], both rising."
+        )
+    return table

@@ -1,0 +1,75 @@
+"""Stacks by name, and controllers from stack files."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any, Callable, Dict, NamedTuple, Union
+
+from .._core import InputError
+from ..support.user_code import find_controller
+from .autopilot import Autopilot
+from .betaflight.betaflight import Betaflight
+from .motor_curve import check_pairs
+from .stack_file import StackFile, read_stack_file
+
+
+class Stack(NamedTuple):
+    """Autopilot that a bridge exists for."""
+
+    summary: str
+    """Noun phrase for lists."""
+    make: Callable[..., Autopilot]
+    """Makes the controller from the values of a stack file."""
+
+
+STACKS: Dict[str, Stack] = {
+    "betaflight": Stack("Betaflight SITL over UDP, level mode with stick pilot", Betaflight)
+}
+"""Stacks by their names in stack files."""
+
+
+def read_autopilot(path: Union[str, Path]) -> Autopilot:
+    """Make the controller that a stack file describes.
+
+    Parameters
+    ----------
+    path : str or path
+        YAML file.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or wrong; the message begins with ``FILE:LINE``.
+    """
+    read = read_stack_file(path, tuple(STACKS))
+    values = {**read.values, "program": _find_program(read)}
+    if not isinstance(values.get("motor_curve", ""), str):
+        try:
+            check_pairs(values["motor_curve"])
+        except InputError as error:
+            raise InputError(f"{read.locate('motor_curve')}{error}") from None
+    if "pilot" in values:
+        values["pilot"] = _find_pilot(read)
+    where = {name: read.locate(name) for name in read.lines}
+    return STACKS[read.kind].make(**values, where=where)
+
+
+def _find_program(read: StackFile) -> str:
+    """Return the path of the program; raises `InputError` if there is none."""
+    name: str = read.values["program"]
+    found = shutil.which(name)
+    if found is None:
+        raise InputError(
+            f"{read.locate('program')}program '{name}' does not exist or is not executable. Build "
+            "it, or correct its path."
+        )
+    return found
+
+
+def _find_pilot(read: StackFile) -> Any:
+    """Import the function of an own pilot."""
+    try:
+        return find_controller(read.values["pilot"], lambda found: found)
+    except InputError as error:
+        raise InputError(f"{read.locate('pilot')}{error}") from None
