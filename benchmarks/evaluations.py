@@ -27,10 +27,10 @@ PROCESSES = 2
 
 def seconds_of_evaluation():
     options = EvaluateOptions(xacro_args=SPIRAL["xacro"], seeds=20, processes=PROCESSES)
-    laws = ["pd", "pd_compensated", "geometric", "indi"]
+    controllers = ["pd", "pd_compensated", "geometric", "indi"]
     shapes = ["spiral", "circle", "eight", "waypoints"]
     start, used = time.perf_counter(), os.times()
-    plan = Plan(laws, shapes, ["eigen"], ["quadrotor"], {}, options)
+    plan = Plan(controllers, shapes, ["eigen"], ["quadrotor"], {}, options)
     evaluation = fly_plan(plan)
     with tempfile.TemporaryDirectory() as folder:
         write(evaluation, plan, Path(folder), plots=True)

@@ -51,7 +51,7 @@ def compare(name, plans, alone):
 
 SPIRAL, HOVER = qc.references.spiral(), qc.references.hover()
 for engine in ("eigen", "gazebo11"):
-    for law in ("geometric", "pd", "lqr", "indi", "pid"):
-        controller = qc.controllers.parse(law)
-        compare(f"{engine} {law}", make_plans(controller, SPIRAL, engine, MOST), 8)
+    for name in ("geometric", "pd", "lqr", "indi", "pid"):
+        controller = qc.controllers.parse(name)
+        compare(f"{engine} {name}", make_plans(controller, SPIRAL, engine, MOST), 8)
 compare("eigen, in NumPy", make_plans(Policy(), HOVER, "eigen", MOST_VECTORIZED), 4)

@@ -41,11 +41,15 @@ def taken(action: object, clock: object = time.perf_counter) -> float:
 def row_against_flight() -> None:
     swept = plan(ROUNDS * 4, "geometric", "circle")
     simulation = swept.spec(0).plan.simulation()
-    start, circle, law = simulation.snapshot(), qc.references.circle(), qc.controllers.geometric()
+    start, circle, controller = (
+        simulation.snapshot(),
+        qc.references.circle(),
+        qc.controllers.geometric(),
+    )
 
     def fly() -> None:
         simulation.restore(start)
-        simulation.run(10, controller=law, reference=circle, log_every=10)
+        simulation.run(10, controller=controller, reference=circle, log_every=10)
 
     ratios = [
         taken(lambda row=row: fly_row(swept.spec(row)), time.process_time)

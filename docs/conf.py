@@ -79,7 +79,7 @@ def _tidy(app, doctree):
             name[0] = nodes.Text("Attributes")
 
 
-def _is_told_by_its_class(app, what, name, member, skip, options):
+def _is_documented_by_its_class(app, what, name, member, skip, options):
     """Skip fields of named tuples, of which Python says but their numbers."""
     return (getattr(member, "__doc__", "") or "").startswith("Alias for field number") or None
 
@@ -89,11 +89,11 @@ def _make_flights(page):
     quadcore_ = [sys.executable, "-m", "quadcore"]
     flight = "--engine eigen --xacro sim_slow:=1 --reference spiral --duration 20 --log-every 20"
     logs = []
-    for law in ("pid_thesis", "pd", "geometric"):
-        folder = str(MADE / "flights" / law)
+    for controller in ("pid_thesis", "pd", "geometric"):
+        folder = str(MADE / "flights" / controller)
         words = ["run", "quadrotor", *flight.split(), "--quiet", "--no-plots", "--out", folder]
-        flown = subprocess.run([*quadcore_, *words, "--controller", law])
-        assert flown.returncode in (0, 3)  # the printed gains lose the vehicle
+        process = subprocess.run([*quadcore_, *words, "--controller", controller])
+        assert process.returncode in (0, 3)  # the printed gains lose the vehicle
         logs.append(f"{folder}/log.csv")
     subprocess.run([*quadcore_, "play", *logs, "--model", "quadrotor", "-o", str(page)], check=True)
 
@@ -105,4 +105,4 @@ def setup(app):
     _make_flights(MADE / "extra" / "flights.html")
     app.connect("source-read", _as_sphinx_reads_it)
     app.connect("doctree-read", _tidy)
-    app.connect("autodoc-skip-member", _is_told_by_its_class)
+    app.connect("autodoc-skip-member", _is_documented_by_its_class)

@@ -29,7 +29,7 @@ AXE = Path(__file__).resolve().parents[2] / "web/node_modules/axe-core/axe.min.j
 DARK = "--blink-settings=preferredColorScheme=0"
 WHEN_READY = """<script>
 window.addEventListener("load", async () => {
-  const told = {};
+  const result = {};
   try {
     while (document.querySelector(".quadcore-player") && !window.quadcore)
       await new Promise((resolve) => setTimeout(resolve, 10));
@@ -38,16 +38,16 @@ window.addEventListener("load", async () => {
   } catch (fault) {
     window.faults.push(String(fault.stack || fault));
   }
-  const told_in = document.createElement("pre");
-  told_in.id = "told";
-  told_in.textContent = JSON.stringify({told, faults: window.faults});
-  document.body.append(told_in);
+  const element = document.createElement("pre");
+  element.id = "result";
+  element.textContent = JSON.stringify({result, faults: window.faults});
+  document.body.append(element);
 });
 </script>"""
 
 
 IN_FRAMES = """
-const told = {};
+const result = {};
 async function opened(url, width) {
   const frame = document.createElement("iframe");
   frame.style.cssText = `width: ${width}px; height: 800px; border: 0`;
@@ -62,16 +62,16 @@ window.onload = async () => {
   try {
     for (const [name, url, width] of PAGES) {
       const frame = await opened(url, width);
-      told[`${name} ${width}`] = await look(frame.contentWindow, frame.contentDocument, width);
+      result[`${name} ${width}`] = await look(frame.contentWindow, frame.contentDocument, width);
       frame.remove();
     }
   } catch (fault) {
     window.faults.push(String(fault));
   }
-  const told_in = document.createElement("pre");
-  told_in.id = "told";
-  told_in.textContent = JSON.stringify({told, faults: window.faults});
-  document.body.append(told_in);
+  const element = document.createElement("pre");
+  element.id = "result";
+  element.textContent = JSON.stringify({result, faults: window.faults});
+  document.body.append(element);
 };
 """
 
@@ -121,50 +121,50 @@ async function look(view, inside) {
     }
   };
   const drawn = () => { scene.render(); return canvas.toDataURL(); };
-  const told = { start: drawn(), begin: time() };
+  const result = { start: drawn(), begin: time() };
   part(".speed").value = "4";
   part(".play").click();
-  told.says = part(".play").textContent;
+  result.says = part(".play").textContent;
   await until(() => time() > 0.5);
-  told.flying = drawn();
+  result.flying = drawn();
   canvas.dispatchEvent(new view.KeyboardEvent("keydown", { key: " ", bubbles: true }));
-  told.held = [part(".play").textContent, time()];
+  result.held = [part(".play").textContent, time()];
   for (let i = 0; i < 5; ++i) await new Promise((resolve) => view.requestAnimationFrame(resolve));
-  told.still = [part(".play").textContent, time()];
+  result.still = [part(".play").textContent, time()];
   part(".play").click();
   await until(() => part(".play").textContent === "Play");
-  Object.assign(told, { end: drawn(), ended: time(), clock: part(".clock").textContent });
+  Object.assign(result, { end: drawn(), ended: time(), clock: part(".clock").textContent });
   part(".play").click();
-  await until(() => time() > 0.1 && time() < told.ended / 2);
-  told.again = part(".play").textContent;
-  return told;
+  await until(() => time() > 0.1 && time() < result.ended / 2);
+  result.again = part(".play").textContent;
+  return result;
 }
 """
 
 
-def told(page, script, folder):
-    """Open a page, run a script that fills the object `told`, and give that.
+def run_script(page, script, folder):
+    """Open a page, run a script that fills the object `result`, and give that.
 
     A fault of the page's own scripts, or of this one, fails the test.
     """
     tell = (
-        f"<script>const told = {{}};\n{script}\nconst told_in = document.createElement('pre');\n"
-        "told_in.id = 'told'; told_in.textContent = JSON.stringify({told, faults});\n"
-        "document.body.append(told_in);</script>"
+        f"<script>const result = {{}};\n{script}\nconst element = document.createElement('pre');\n"
+        "element.id = 'result'; element.textContent = JSON.stringify({result, faults});\n"
+        "document.body.append(element);</script>"
     )
-    return opened(
+    return open_page(
         page.replace("<head>", "<head>" + CATCH).replace("</body>", tell + "</body>"), folder
     )
 
 
-def told_when_ready(page, script, folder, *options):
-    """As `told`, once the players of the page have started; the script may wait for promises.
+def run_script_when_ready(page, script, folder, *options):
+    """As `run_script`, once the players of the page have started; the script may wait for promises.
 
     Lines in the console count as faults.
     """
     tell = CATCH + WHEN_READY.replace("SCRIPT", script)
     whole = page.replace("<head>", "<head>" + tell)
-    return opened(whole, folder, "--virtual-time-budget=60000", *options)
+    return open_page(whole, folder, "--virtual-time-budget=60000", *options)
 
 
 def find_violations(page, folder, *options):
@@ -173,24 +173,24 @@ def find_violations(page, folder, *options):
         pytest.skip("needs axe-core; scripts/bundle_player installs it")
     script = """
     const { violations } = await axe.run(document, { resultTypes: ["violations"] });
-    told.dark = matchMedia("(prefers-color-scheme: dark)").matches;
-    told.found = violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(
+    result.dark = matchMedia("(prefers-color-scheme: dark)").matches;
+    result.found = violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(
       ({ id, nodes }) => `${id}: ${nodes[0].html} ${nodes[0].failureSummary}`);
     """
     axe = f"<head><script>{AXE.read_text(encoding='utf-8')}</script>"
-    found = told_when_ready(page.replace("<head>", axe, 1), script, folder, *options)
+    found = run_script_when_ready(page.replace("<head>", axe, 1), script, folder, *options)
     assert found["dark"] == (DARK in options)
     return found["found"]
 
 
-def seen(look, files, widths, folder, fonts="wide"):
+def look_at_pages(look, files, widths, folder, fonts="wide"):
     """Open files at some widths (px): what a script finds in each, by (file, width)."""
     pages = [(str(file), file.as_uri(), width) for file in files for width in widths]
     script = f"const PAGES = {json.dumps(pages)};{IN_FRAMES}{look}"
     whole = f"<html><head>{CATCH}<script>{script}</script></head><body></body></html>"
     # As much time as the pages want; none passes while nothing happens.
     options = "--allow-file-access-from-files", "--virtual-time-budget=1000000"
-    found = opened(whole, folder, *options, fonts=fonts)
+    found = open_page(whole, folder, *options, fonts=fonts)
     return {(name, width): found[f"{name} {width}"] for name, _, width in pages}
 
 
@@ -203,13 +203,13 @@ def what_sticks_out(files, widths, folder):
     return {
         (*page, fonts): out
         for fonts in FONTS
-        for page, out in seen(STICK_OUT, files, widths, folder, fonts).items()
+        for page, out in look_at_pages(STICK_OUT, files, widths, folder, fonts).items()
     }
 
 
 def assert_it_plays(file, widths, folder):
     """The player in a page, or in the page within that, flies from the beginning to the end."""
-    for found in seen(PLAY, [file], widths, folder).values():
+    for found in look_at_pages(PLAY, [file], widths, folder).values():
         assert len({found["start"], found["flying"], found["end"]}) == 3
         assert found["begin"] == 0 and found["says"] == found["again"] == "Pause"
         assert found["held"] == found["still"] and found["held"][0] == "Play"
@@ -231,8 +231,8 @@ def choose_fonts(fonts, folder):
     return file
 
 
-def opened(page, folder, *options, fonts="wide"):
-    """What a page has written into its element #told."""
+def open_page(page, folder, *options, fonts="wide"):
+    """What a page has written into its element #result."""
     program = next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
         pytest.skip(f"needs a browser, one of {', '.join(NAMES)}; scripts/test installs one")
@@ -244,8 +244,8 @@ def opened(page, folder, *options, fonts="wide"):
         env={**os.environ, "FONTCONFIG_FILE": str(choose_fonts(fonts, folder))},
         capture_output=True, check=True, timeout=1200,
     )  # fmt: skip
-    found = re.search(r'<pre id="told">(.*?)</pre>', answer.stdout.decode(), re.DOTALL)
+    found = re.search(r'<pre id="result">(.*?)</pre>', answer.stdout.decode(), re.DOTALL)
     assert found, answer.stderr.decode()[-2000:]
     content = json.loads(html.unescape(found.group(1)))
     assert content["faults"] == []
-    return content["told"]
+    return content["result"]

@@ -95,7 +95,7 @@ def folders_of_hook_plugins(tmp_path_factory):
 
 @pytest.fixture
 def hook_plugins(folders_of_hook_plugins, monkeypatch):
-    """The examples that have one hook each, and the plugin that tells what it is told."""
+    """The examples with one hook each, and the plugin that publishes what its hooks receive."""
     monkeypatch.setenv("QUADCORE_PLUGIN_PATH", ":".join(map(str, folders_of_hook_plugins)))
 
 

@@ -71,7 +71,7 @@ sys.stdout.write(hashlib.sha256(scope["fly"](*things)).hexdigest())
 """
 
 
-def flown_elsewhere(fly, *things):
+def fly_in_process(fly, *things):
     """Digest of what the source `fly` returns for things that came through pickle alone."""
     here = str(Path(__file__).parent)
     ran = subprocess.run(

@@ -31,7 +31,7 @@ class Gyrostat:
         places = np.array([com] + [rotor.xyz for rotor in rotors], dtype=float)
         xx, yy, zz, xy, xz, yz = inertia
         own = [np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])]
-        own += [turned(np.diag(r.inertia), turn) for r, turn in zip(rotors, turns)]
+        own += [turn_inertia(np.diag(r.inertia), turn) for r, turn in zip(rotors, turns)]
         self.mass = masses.sum()
         self.center = masses @ places / self.mass
         self.arms = places[1:] - self.center
@@ -83,7 +83,7 @@ class Gyrostat:
         return np.array(rows)
 
 
-def turned(inertia, turn):
+def turn_inertia(inertia, turn):
     """A moment of inertia that is given in turned axes."""
     axes = turn.apply(np.eye(3))
     return axes.T @ inertia @ axes

@@ -23,7 +23,7 @@ def with_fixed_link(urdf, name, mass, inertia, xyz=(0, 0, 0), rpy=(0, 0, 0)):
     )
 
 
-def motored(rotors=ODD, air=CHAPTER2, **options):
+def make_motored(rotors=ODD, air=CHAPTER2, **options):
     return vehicle(rotors, inertia=SKEW, com=(0.01, -0.02, 0.03), air=air, motor=MOTOR, **options)
 
 

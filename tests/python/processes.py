@@ -12,7 +12,7 @@ FALL = ["run", "quadrotor", "--engine", "eigen", "--duration", "0.05"]
 LONG = 120.0  # s; generous, because waiting costs nothing when things work
 
 
-def ran(*arguments, **options):
+def run_command(*arguments, **options):
     """A command, ended; its error output must be no traceback."""
     done = subprocess.run(
         [*QUADCORE, *arguments],
@@ -39,8 +39,8 @@ def script(text, **options):
     )
 
 
-def refused(*arguments, **options):
-    done = ran(*arguments, **options)
+def run_refused(*arguments, **options):
+    done = run_command(*arguments, **options)
     assert done.returncode == 2, done.stderr
     assert done.stderr.startswith("error: ") and done.stderr.count("\n") == 1
     return done.stderr

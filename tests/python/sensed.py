@@ -23,7 +23,7 @@ TOPIC = {
 }
 
 
-def mounted(name, tags, mass=1.3):
+def make_mounted(name, tags, mass=1.3):
     urdf = vehicle((), mass=mass, inertia=SKEW, com=(0.01, -0.02, 0.03))
     urdf = with_fixed_link(urdf, "mast", 0.05, (1e-5, 2e-5, 2.5e-5), AT, RPY)
     return with_plugins(urdf, plugin(name, tags))

@@ -12,7 +12,7 @@ MASS = {"frame.mass": "uniform:0.9:1.1"}
 
 
 def sweep(vary=MASS, **options):
-    """A small one, in this machine's processes unless told otherwise."""
+    """Run a small sweep, in local processes by default."""
     given = {"duration": 0.5, "samples": 12, "xacro_args": {"sim_slow": 1}, **options}
     return qc.sweep("geometric", "circle", vary, **given)
 

@@ -14,7 +14,7 @@ def hover():
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "expected"),
     [
         ({"vary": {"row": [1, 2]}}, "two columns 'row'"),
         ({"measures": ["failure"]}, "two columns 'failure'"),
@@ -28,10 +28,10 @@ def hover():
         ({"seed": "a"}, "seed is 'a'. Give a whole number"),
     ],
 )  # fmt: skip
-def test_wrong_arguments_of_a_swept_function_are_refused_in_one_line(given, told):
+def test_wrong_arguments_of_a_swept_function_are_refused_in_one_line(given, expected):
     with pytest.raises(qc.InputError) as refused:
         qc.sweep(**{"function": abs, "vary": {"a": [1, 2]}, **given})
-    assert told in str(refused.value) and "\n" not in str(refused.value)
+    assert expected in str(refused.value) and "\n" not in str(refused.value)
 
 
 def test_an_axis_named_seed_may_hold_any_number():
@@ -40,7 +40,7 @@ def test_an_axis_named_seed_may_hold_any_number():
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "expected"),
     [
         ({"free": ["xacro.motor"]}, "free xacro.motor: 'pid' is not a number. Only numbers can"),
         ({"free": None}, "free is None. Give a name, or several"),
@@ -51,10 +51,10 @@ def test_an_axis_named_seed_may_hold_any_number():
         ({"log": 3}, "log is 3. Give a log, or its file"),
     ],
 )  # fmt: skip
-def test_wrong_arguments_of_a_fit_are_refused_in_one_line(hover, given, told):
+def test_wrong_arguments_of_a_fit_are_refused_in_one_line(hover, given, expected):
     with pytest.raises(qc.InputError) as refused:
         qc.fit("quadrotor", **{"log": hover, "free": ["frame.mass"], **given})
-    assert told in str(refused.value) and "\n" not in str(refused.value)
+    assert expected in str(refused.value) and "\n" not in str(refused.value)
 
 
 def test_a_flight_of_one_row_is_not_fitted():

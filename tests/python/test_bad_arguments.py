@@ -234,9 +234,9 @@ def test_an_argument_of_a_wrong_type_is_refused_in_one_line(call, argument):
     for value in arguments[argument]:
         with pytest.raises(qc.InputError) as refusal:
             function(**{argument: value})
-        told = str(refusal.value)
-        assert "\n" not in told and len(told) < 250, value
-        assert "supported" not in told and "has no attribute" not in told, value
+        message = str(refusal.value)
+        assert "\n" not in message and len(message) < 250, value
+        assert "supported" not in message and "has no attribute" not in message, value
 
 
 def test_lists_that_come_one_by_one_are_read_once():
@@ -251,7 +251,7 @@ def test_lists_that_come_one_by_one_are_read_once():
         qc.compare([])
 
 
-def test_numbers_and_names_that_cannot_be_meant_are_told():
+def test_impossible_numbers_and_names_are_reported():
     with pytest.raises(qc.InputError, match=r"^steps must be a whole number below 2\^63\.$"):
         quadrotor("eigen").step(2**63)
     with pytest.raises(qc.InputError, match=r"^topic must be a name in UTF-8\.$"):
@@ -271,9 +271,11 @@ def test_what_reading_a_state_raises_is_seen():
 def test_a_long_value_is_shortened_in_what_is_said_of_it():
     with pytest.raises(qc.InputError) as refusal:
         qc.Simulation("quadrotor", parameters=np.arange(10000.0).reshape(-1, 10))
-    told = str(refusal.value)
-    assert told.startswith("parameters is array([[") and len(told) < 250 and "\n" not in told
-    assert told.endswith("Give a mapping of names to values.")
+    message = str(refusal.value)
+    assert (
+        message.startswith("parameters is array([[") and len(message) < 250 and "\n" not in message
+    )
+    assert message.endswith("Give a mapping of names to values.")
 
 
 def test_an_option_that_there_is_not_is_refused_with_the_nearest():

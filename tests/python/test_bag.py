@@ -5,7 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from processes import ran, refused
+from processes import run_command, run_refused
 
 import quadcore as qc
 from quadcore.formats import bag
@@ -44,7 +44,7 @@ def test_a_log_goes_round_all_formats_bit_for_bit(log, tmp_path):
     log.to_csv(tmp_path / "a.csv")
     formats = "a.csv", "b.mat", "c.bag", "c.ros2", "d.csv"
     for source, target in zip(formats, formats[1:]):
-        done = ran("convert", str(tmp_path / source), str(tmp_path / target))
+        done = run_command("convert", str(tmp_path / source), str(tmp_path / target))
         assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
         assert_same(qc.Log.of_file(tmp_path / target), log)
     assert (tmp_path / "d.csv").read_bytes() == (tmp_path / "a.csv").read_bytes()
@@ -58,7 +58,7 @@ def test_what_a_killed_conversion_left_goes_with_the_next(log, tmp_path):
     others = [f".b.bag.{os.getpid()}.part", ".c.bag.1.part", ".b.bag.mine.part"]
     for name in (f".b.bag.{gone.pid}.part", f".b.bag.{gone.pid}.rows.part", *others):
         (tmp_path / name).touch()
-    done = ran("convert", str(tmp_path / "a.csv"), str(tmp_path / "b.bag"))
+    done = run_command("convert", str(tmp_path / "a.csv"), str(tmp_path / "b.bag"))
     assert done.returncode == 0, done.stderr
     left = sorted(path.name for path in tmp_path.iterdir())
     assert left == sorted(["a.csv", "b.bag", *others])
@@ -81,7 +81,7 @@ def messages(path, topic):
 
 def test_a_flight_is_recorded_on_the_topics_of_the_node(tmp_path):
     path = tmp_path / "flight.bag"
-    done = ran("run", "quadrotor", "--engine", "eigen", "--duration", "0.1", "--set",
+    done = run_command("run", "quadrotor", "--engine", "eigen", "--duration", "0.1", "--set",
                "odometry.rate=500", "--log-topics", "odom", "--log", str(path),
                "--log", str(tmp_path / "flight.csv"))  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -161,12 +161,12 @@ def test_what_cannot_be_read_is_one_line(tmp_path):
         ("empty.bag", "is no bag that can be read"),
         ("none.bag", "cannot be read"),
     ):
-        error = refused("run", "quadrotor", "--commands", str(tmp_path / name))
+        error = run_refused("run", "quadrotor", "--commands", str(tmp_path / name))
         assert f"{name}: {says}" in error
     for name in ("other.bag", "text.bag"):
         with pytest.raises(qc.InputError, match=r"topics that end in ground_truth|is no bag"):
             qc.Log.of_file(tmp_path / name)
-    assert refused("convert", str(tmp_path / "other.bag"), "x.txt").count("logs are written to")
+    assert run_refused("convert", str(tmp_path / "other.bag"), "x.txt").count("logs are written to")
 
 
 SYSTEM = "/usr/bin/python3"
@@ -260,5 +260,5 @@ def test_a_ros_2_bag_replaces_nothing_and_leaves_no_parts(log, tmp_path, monkeyp
 def test_a_damaged_ros_2_bag_is_one_line(log, tmp_path):
     log.to_file(tmp_path / "flight.ros2")
     (tmp_path / "flight.ros2" / "flight.ros2.db3").write_bytes(b"no database")
-    error = refused("convert", str(tmp_path / "flight.ros2"), str(tmp_path / "a.csv"))
+    error = run_refused("convert", str(tmp_path / "flight.ros2"), str(tmp_path / "a.csv"))
     assert "is no bag that can be read" in error

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from sensed import AT, RPY, mounted
+from sensed import AT, RPY, make_mounted
 from vehicles import start
 
 import quadcore as qc
@@ -30,7 +30,7 @@ def pressure_at(simulation, height):
 
 
 def test_the_pressure_is_that_of_the_standard_atmosphere(hangar):
-    simulation = hangar(mounted("barometer", {"link": "mast"}), engine="eigen")
+    simulation = hangar(make_mounted("barometer", {"link": "mast"}), engine="eigen")
     for height, pressure in STANDARD:
         assert pressure_at(simulation, height) == pytest.approx(pressure, rel=1e-5)
 
@@ -42,7 +42,7 @@ def test_the_pressure_falls_as_the_weight_of_the_air_above(gradient, tmp_path):
     )
     simulation = in_world(
         tmp_path,
-        mounted("barometer", {"link": "mast"}),
+        make_mounted("barometer", {"link": "mast"}),
         f"<atmosphere type='adiabatic'>{air}</temperature_gradient></atmosphere>",
     )
     assert pressure_at(simulation, 0) == pytest.approx(85000, rel=1e-14)
@@ -55,7 +55,7 @@ def test_the_pressure_falls_as_the_weight_of_the_air_above(gradient, tmp_path):
 
 
 def test_where_the_air_would_be_at_absolute_zero_nothing_is_measured(hangar):
-    simulation = hangar(mounted("barometer", {}), engine="eigen")
+    simulation = hangar(make_mounted("barometer", {}), engine="eigen")
     with pytest.raises(qc.FlightError, match="absolute zero at this height"):
         start(simulation, position=(0, 0, 44331))
 
@@ -64,7 +64,9 @@ def test_where_the_air_would_be_at_absolute_zero_nothing_is_measured(hangar):
 def test_the_field_is_the_worlds_in_the_axes_of_the_link(field, tmp_path):
     text = "" if field is None else "<magnetic_field>2e-5 1e-6 -4e-5</magnetic_field>"
     pose = (1, 2, 3, 0.3, -0.2, 2.1)
-    simulation = in_world(tmp_path, mounted("magnetometer", {"link": "mast"}), text, spawn=pose)
+    simulation = in_world(
+        tmp_path, make_mounted("magnetometer", {"link": "mast"}), text, spawn=pose
+    )
     # Without an element it is that of Gazebo's worlds.
     field_W = np.array([5.5645e-6, 22.8758e-6, -42.3884e-6] if field is None else field)
     assert simulation.world.magnetic_field.tolist() == field_W.tolist()
@@ -81,7 +83,7 @@ def test_the_field_is_the_worlds_in_the_axes_of_the_link(field, tmp_path):
 )
 def test_their_errors_have_their_deviations_and_correlation(name, topic, fields, unit, hangar):
     def errors(seconds, **tags):
-        simulation = hangar(mounted(name, {"rate": 10, **tags}), engine="eigen", dt=0.1)
+        simulation = hangar(make_mounted(name, {"rate": 10, **tags}), engine="eigen", dt=0.1)
         rows = simulation.run(seconds, topics=[topic]).topics[topic]
         expected = tags.get("noise", 0) ** 2 + tags.get("drift", 0) ** 2
         assert rows["variance"][0] == pytest.approx(expected, rel=1e-15)
@@ -104,5 +106,5 @@ def test_the_field_of_the_world_wins_over_that_of_its_physics(tmp_path):
     """As in Gazebo 11, whatever the order."""
     own, other = (f"<magnetic_field>{b} 0 0</magnetic_field>" for b in (1, 2))
     for world in (f"{own}<physics>{other}</physics>", f"<physics>{other}</physics>{own}"):
-        simulation = in_world(tmp_path, mounted("imu", {}), world)
+        simulation = in_world(tmp_path, make_mounted("imu", {}), world)
         assert simulation.world.magnetic_field.tolist() == [1, 0, 0]

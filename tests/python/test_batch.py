@@ -94,7 +94,7 @@ def test_neither_threads_nor_neighbours_nor_the_length_of_calls_change_a_bit(odd
 
 
 @pytest.mark.parametrize(("engine", "too_fast"), [("eigen", 9e5), ("gazebo11", 4000)])
-def test_a_vehicle_that_fails_is_told_of_and_the_others_fly_on(engine, too_fast):
+def test_a_vehicle_that_fails_is_reported_and_the_others_go_on(engine, too_fast):
     commands = COMMANDS.copy()
     commands[5] = too_fast, -500, 500, -500
     parameters = {"drone_plugin.sim_slow": 1, "motorpid_plugin.sim_slow": 1}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from flights import ENGINES
-from hooked import CHAPTER2, G, assert_same_bytes, fly, motored, with_plugins
+from hooked import CHAPTER2, G, assert_same_bytes, fly, make_motored, with_plugins
 from vehicles import CROSS, HAND, MOTOR, ODD, plugin, start, vehicle, wrenches
 
 import quadcore as qc
@@ -20,11 +20,11 @@ def power(speeds, left=1):
     return np.sum(left * np.abs(speeds) ** 3) * HAND["rotorTorqueCoeff"]
 
 
-def powered(rotors=CROSS, air=HAND, **tags):
+def add_battery(rotors=CROSS, air=HAND, **tags):
     return with_plugins(vehicle(rotors, air=air), plugin("battery", {**LIPO, **tags}))
 
 
-def turning(hangar, urdf, speeds=SPEEDS, **options):
+def start_turning(hangar, urdf, speeds=SPEEDS, **options):
     """Rotors that nothing brakes: the reaction is the frame's."""
     return start(hangar(urdf, engine="eigen", **options), rotor_velocity=speeds)
 
@@ -36,7 +36,7 @@ def test_current_and_voltage_are_those_of_the_circuit(sim_slow, efficiency, hang
     urdf = vehicle(CROSS, air={**HAND, **slowed}, motor={**MOTOR, **slowed})
     tags = {**LIPO, "efficiency": efficiency, "charge": 0.6}
     urdf = with_plugins(urdf, plugin("battery", tags))
-    simulation = turning(hangar, urdf, SPEEDS / sim_slow)
+    simulation = start_turning(hangar, urdf, SPEEDS / sim_slow)
     simulation.step()
     battery = simulation.topic("battery")
     U, current = battery["voltage"], battery["current"]
@@ -78,7 +78,7 @@ def test_what_falls_with_the_voltage_is_thrust_and_reaction(hangar):
 
 def test_a_battery_of_one_voltage_is_drained_steadily(hangar):
     same = {"fullVoltage": 11.1, "emptyVoltage": 11.1}
-    simulation = turning(hangar, powered(**same), BALANCED, dt=0.005)
+    simulation = start_turning(hangar, add_battery(**same), BALANCED, dt=0.005)
     battery = simulation.run(20, topics=["battery"]).topics["battery"]
     current = battery["current"][1]
     assert np.allclose(battery["current"][1:], current, rtol=1e-6)
@@ -88,7 +88,7 @@ def test_a_battery_of_one_voltage_is_drained_steadily(hangar):
 
 def test_without_resistance_the_voltage_falls_as_the_equation_says(hangar):
     # dE/dt = -(12.6 - 9.9)/Q I and I = P E^2/12.6^3: 1/E grows linearly.
-    simulation = turning(hangar, powered(resistance=0, capacity=0.03), BALANCED, dt=0.005)
+    simulation = start_turning(hangar, add_battery(resistance=0, capacity=0.03), BALANCED, dt=0.005)
     battery = simulation.run(15, topics=["battery"]).topics["battery"]
     U = battery["voltage"][1:]
     t = np.arange(len(U)) * 0.005
@@ -98,7 +98,7 @@ def test_without_resistance_the_voltage_falls_as_the_equation_says(hangar):
 
 
 def test_an_empty_battery_lifts_nothing(hangar):
-    simulation = turning(hangar, powered(charge=1e-5))
+    simulation = start_turning(hangar, add_battery(charge=1e-5))
     assert simulation.topic("battery")["count"] == 0
     simulation.step(100)
     battery = simulation.topic("battery")
@@ -111,7 +111,7 @@ def test_shares_of_a_fault_and_of_the_battery_multiply(hangar):
     urdf = with_plugins(
         vehicle(CROSS, air=HAND), fault, plugin("battery", {**LIPO, "faults": "faults"})
     )
-    simulation = turning(hangar, urdf)
+    simulation = start_turning(hangar, urdf)
     simulation.step()
     battery, shares = simulation.topic("battery"), simulation.topic("effectiveness")
     U = battery["voltage"]
@@ -129,11 +129,12 @@ def test_two_that_say_what_is_left_of_rotors_are_refused(hangar):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_battery_that_does_not_sag_flies_the_same_bytes_and_survives_a_snapshot(engine, hangar):
     ideal = {**LIPO, "emptyVoltage": 12.6, "resistance": 0}
-    bare = fly(hangar(motored(), G, engine=engine), 200)
+    bare = fly(hangar(make_motored(), G, engine=engine), 200)
     assert_same_bytes(
-        bare, fly(hangar(with_plugins(motored(), plugin("battery", ideal)), G, engine=engine), 200)
+        bare,
+        fly(hangar(with_plugins(make_motored(), plugin("battery", ideal)), G, engine=engine), 200),
     )
-    simulation = hangar(with_plugins(motored(), plugin("battery", LIPO)), G, engine=engine)
+    simulation = hangar(with_plugins(make_motored(), plugin("battery", LIPO)), G, engine=engine)
     fly(simulation, 100)
     middle = simulation.snapshot()
     second = fly(simulation, 100)
@@ -144,4 +145,4 @@ def test_a_battery_that_does_not_sag_flies_the_same_bytes_and_survives_a_snapsho
 
 def test_voltages_the_wrong_way_round_are_refused(hangar):
     with pytest.raises(qc.InputError, match=r"<emptyVoltage> exceeds <fullVoltage>\. Swap them"):
-        hangar(powered(emptyVoltage=13))
+        hangar(add_battery(emptyVoltage=13))

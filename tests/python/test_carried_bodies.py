@@ -11,7 +11,7 @@ from hooked import (
     G,
     assert_same_bytes,
     fly,
-    motored,
+    make_motored,
     with_fixed_link,
     with_plugins,
 )
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.usefixtures("hook_plugins")
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_what_is_carried_flies_as_a_link_of_the_urdf(engine, hangar):
-    urdf = motored()
+    urdf = make_motored()
     place = tuple(CARGO[axis] for axis in "xyz")
     lumped = hangar(with_fixed_link(urdf, "cargo", 0.23, CARGO_INERTIA, place), G, engine=engine)
     carrying = hangar(with_plugins(urdf, plugin("cargo", CARGO)), G, engine=engine)
@@ -41,7 +41,7 @@ def test_what_is_carried_flies_as_a_link_of_the_urdf(engine, hangar):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_after_its_release_the_bare_vehicle_flies_on_from_where_it_was(engine, hangar):
-    urdf = motored()
+    urdf = make_motored()
     released = hangar(
         with_plugins(urdf, plugin("cargo", {**CARGO, "release": 0.7})), G, engine=engine
     )
@@ -60,7 +60,7 @@ def test_after_its_release_the_bare_vehicle_flies_on_from_where_it_was(engine, h
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_flight_is_taken_up_again_across_a_release(engine, hangar):
-    urdf = with_plugins(motored(), plugin("cargo", {**CARGO, "release": 0.3}))
+    urdf = with_plugins(make_motored(), plugin("cargo", {**CARGO, "release": 0.3}))
     simulation = hangar(urdf, G, engine=engine)
     fly(simulation, 200)
     before = simulation.snapshot()
@@ -94,4 +94,4 @@ def test_what_cannot_be_carried_is_refused_with_the_plugin(tags, says, hangar):
     element = plugin("cargo", {**CARGO, **{k: v for k, v in tags.items() if k != "name"}})
     element = element.replace('name="cargo"', f'name="{tags.get("name", "cargo")}"')
     with pytest.raises(qc.InputError, match=f"plugin '.*' \\(.*libcargo_plugin.so\\): {says}"):
-        hangar(with_plugins(motored(), element), G)
+        hangar(with_plugins(make_motored(), element), G)

@@ -28,7 +28,7 @@ def in_empty_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def written():
+def list_files():
     return sorted(path.name for path in Path().rglob("*") if path.is_file())
 
 
@@ -72,8 +72,8 @@ def test_info_tells_all_of_a_parameter_in_80_columns():
         assert max(map(len, lines)) <= 80
         words = " ".join(" ".join(lines).split())
         for parameter in plugin.parameters:
-            for told in (parameter.name, parameter.meaning, parameter.range, parameter.unit):
-                assert told in words, parameter.name
+            for output in (parameter.name, parameter.meaning, parameter.range, parameter.unit):
+                assert output in words, parameter.name
 
 
 def test_run_prints_a_summary_and_writes_nothing_unasked(capsys):
@@ -82,7 +82,7 @@ def test_run_prints_a_summary_and_writes_nothing_unasked(capsys):
     rows = dict(line.split(maxsplit=1) for line in out.splitlines())
     assert (rows["model"].strip(), rows["engine"].strip()) == ("quadrotor", "gazebo11")
     assert "9.98" in out  # 5 cm s of free fall from 10 m
-    assert written() == []
+    assert list_files() == []
 
 
 def test_the_summary_tells_the_end_of_the_flight_however_little_is_logged(capsys):
@@ -104,9 +104,11 @@ def test_quiet_prints_nothing(capsys):
 def test_out_holds_the_log_and_the_plots(capsys):
     assert main([*FALL, "--out", "a/b", "--log", "log.mat"]) == 0
     plots = ["attitude", "path", "position", "rates", "rotors"]
-    assert written() == sorted([*RUN, "log.mat", "report.html", *(f"{name}.png" for name in plots)])
+    assert list_files() == sorted(
+        [*RUN, "log.mat", "report.html", *(f"{name}.png" for name in plots)]
+    )
     out = capsys.readouterr().out
-    assert all(name in out for name in written())
+    assert all(name in out for name in list_files())
     rows = np.loadtxt("a/b/log.csv", delimiter=",", skiprows=1)
     assert rows[:, 0] == pytest.approx(np.arange(51) * 1e-3)
     assert np.array_equal(scipy.io.loadmat("log.mat")["z"].ravel(), rows[:, 3])
@@ -114,7 +116,7 @@ def test_out_holds_the_log_and_the_plots(capsys):
 
 def test_wrenches_are_in_logs_and_pictures_when_asked_for():
     assert main([*FALL, "--wrenches", "--out", ".", "--log", "log.mat"]) == 0
-    assert "wrenches.png" in written()
+    assert "wrenches.png" in list_files()
     header = Path("log.csv").read_text().splitlines()[0]
     assert ",wrench_thrust.fx,wrench_thrust.fy,wrench_thrust.fz,wrench_thrust.tx," in header
     logs = [qc.Log.of_file(f"log{suffix}") for suffix in (".csv", ".mat")]
@@ -130,7 +132,7 @@ def test_options_reach_the_flight():
     options = "--engine ode --dt 0.002 --log-every 5 --spawn -1,0,3 --commands c.csv --no-plots"
     sim_slow = ["--xacro", "sim_slow:=1"]
     assert main([*FALL, *options.split(), *sim_slow, "--out", "."]) == 0
-    assert written() == sorted(["c.csv", *RUN, "report.html"])
+    assert list_files() == sorted(["c.csv", *RUN, "report.html"])
     rows = np.loadtxt("log.csv", delimiter=",", skiprows=1)
     assert rows[:, 0] == pytest.approx(np.arange(0, 0.051, 0.01))
     assert rows[0, 1:4] == pytest.approx([-1, 0, 3])
@@ -184,7 +186,7 @@ def test_the_same_seed_gives_the_same_bytes():
 def test_bad_input_is_one_line_and_status_2(capsys, arguments, reason):
     Path("w.csv").write_text("t,w1,w2,w3,w4\n0,1,1,1,1\n1,1,nan,1,1\n")
     assert reason in refusal(capsys, *arguments.split())
-    assert written() == ["w.csv"]
+    assert list_files() == ["w.csv"]
 
 
 def test_an_unwritable_log_is_refused_before_the_flight(capsys, monkeypatch):
@@ -226,11 +228,11 @@ def test_an_interrupted_run_keeps_its_log_and_is_status_130(capsys, monkeypatch)
 def test_an_interrupt_while_the_log_is_written_waits_for_it(monkeypatch):
     write = mat.write_variables
 
-    def interrupted(*what):
+    def write_and_interrupt(*what):
         signal.raise_signal(signal.SIGINT)
         write(*what)
 
-    monkeypatch.setattr(mat, "write_variables", interrupted)
+    monkeypatch.setattr(mat, "write_variables", write_and_interrupt)
     assert main([*FALL, "--log", "log.mat"]) == 130
     assert len(scipy.io.loadmat("log.mat")["t"]) == 51
 
@@ -242,7 +244,7 @@ def test_a_second_interrupt_does_not_wait(monkeypatch):
 
     monkeypatch.setattr(scipy.io, "savemat", lambda *_, **__: interrupted_twice())
     assert main([*FALL, "--log", "log.mat"]) == 130
-    assert written() == []
+    assert list_files() == []
 
 
 def test_warnings_go_to_standard_error(capsys):
@@ -268,12 +270,12 @@ def test_help_and_the_module_work_from_a_shell():
 def test_help_names_what_is_shipped_and_where_a_flight_begins(capsys):
     with pytest.raises(SystemExit):
         main(["run", "--help"])
-    told = " ".join(capsys.readouterr().out.split())
+    output = " ".join(capsys.readouterr().out.split())
     models, worlds = (", ".join(resources.list_shipped(folder)) for folder in ("urdf", "worlds"))
-    assert "quadrotor" in models and f"or a built-in model: {models} " in told
-    assert "default" in worlds and f"or a built-in world: {worlds} (default: empty) " in told
+    assert "quadrotor" in models and f"or a built-in model: {models} " in output
+    assert "default" in worlds and f"or a built-in world: {worlds} (default: empty) " in output
     x, y, z = qc.FlightPlan.of().spawn[:3]
-    assert f"in m and rad (default: {x:g},{y:g},{z:g})" in told
+    assert f"in m and rad (default: {x:g},{y:g},{z:g})" in output
 
 
 def test_a_reader_that_stops_early_is_no_error():

@@ -34,7 +34,7 @@ def in_empty_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def printed(capsys, *words):
+def run_main(capsys, *words):
     assert main(words) == 0
     return capsys.readouterr().out
 
@@ -46,9 +46,9 @@ def refusal(capsys, *words):
 
 @pytest.mark.parametrize("kind", list_names.KINDS)
 def test_list_prints_names_that_other_commands_take(kind, capsys):
-    entries = json.loads(printed(capsys, "list", kind, "--json"))
+    entries = json.loads(run_main(capsys, "list", kind, "--json"))
     names = [entry["name"] for entry in entries]
-    assert [line.split()[0] for line in printed(capsys, "list", kind).splitlines()] == names
+    assert [line.split()[0] for line in run_main(capsys, "list", kind).splitlines()] == names
     examples = {
         "models": "hummingbird", "worlds": "basic", "scenarios": "gusty",
         "controllers": "geometric", "references": "spiral", "engines": "gazebo11",
@@ -57,18 +57,18 @@ def test_list_prints_names_that_other_commands_take(kind, capsys):
 
 
 def test_list_has_the_parameters_of_controllers(capsys):
-    entries = json.loads(printed(capsys, "list", "controllers", "--json"))
+    entries = json.loads(run_main(capsys, "list", "controllers", "--json"))
     (geometric,) = (entry for entry in entries if entry["name"] == "geometric")
     assert "kp_xy" in [parameter["name"] for parameter in geometric["parameters"]]
 
 
 def test_info_without_a_model_lists_the_models(capsys):
-    assert printed(capsys, "info") == printed(capsys, "list", "models")
+    assert run_main(capsys, "info") == run_main(capsys, "list", "models")
     assert "--set requires a MODEL. Name one." in refusal(capsys, "info", "--set", "frame.mass=1")
 
 
 def test_info_as_json_holds_what_the_simulation_has(capsys):
-    found = json.loads(printed(capsys, "info", "quadrotor", "--set", "frame.mass=2", "--json"))
+    found = json.loads(run_main(capsys, "info", "quadrotor", "--set", "frame.mass=2", "--json"))
     simulation = qc.Simulation("quadrotor", parameters={"frame.mass": 2})
     assert found["mass"] == simulation.mass and found["inertia"] == simulation.inertia.tolist()
     plugins = {plugin["name"]: plugin for plugin in found["plugins"]}
@@ -77,7 +77,7 @@ def test_info_as_json_holds_what_the_simulation_has(capsys):
 
 def test_run_as_json_holds_the_result_and_the_files(capsys):
     words = [*HOVER[:-1], "--controller", "geometric", "--out", "out", "--json"]
-    found = json.loads(printed(capsys, *words))
+    found = json.loads(run_main(capsys, *words))
     assert (found["model"], found["engine"], found["steps"]) == ("quadrotor", "eigen", 50)
     assert found["max_error"] < 0.1 and found["controller"] == "geometric"
     assert "out/report.html" in found["files"]
@@ -86,13 +86,13 @@ def test_run_as_json_holds_the_result_and_the_files(capsys):
 
 def test_validate_as_json_holds_each_flight(capsys):
     words = ["validate", "--engine", "eigen", "--sim-slow", "1", "--drag", "none", "--json"]
-    found = json.loads(printed(capsys, *words, "--duration", "0.1"))
+    found = json.loads(run_main(capsys, *words, "--duration", "0.1"))
     (flight,) = found["flights"]
     assert flight["failure"] == "" and flight["max"]["distance"] < 1e-3
 
 
 def test_examples_are_copied_and_never_over_others(capsys):
-    written = printed(capsys, "examples", "here")
+    written = run_main(capsys, "examples", "here")
     assert written.splitlines() == [
         f"written here/{name}" for name in ("notebooks", "examples", "config")
     ]
@@ -114,7 +114,7 @@ def test_doctor_prints_every_check_with_its_remedy(capsys, monkeypatch):
     monkeypatch.delenv("QUADCORE_PLUGIN_PATH")
     monkeypatch.setenv("PATH", "/nowhere")
     monkeypatch.delenv("CXX", raising=False)
-    found = json.loads(printed(capsys, "doctor", "--json"))
+    found = json.loads(run_main(capsys, "doctor", "--json"))
     states = {finding["what"]: finding for finding in found}
     assert states["engine gazebo11"]["state"] == states["numpy"]["state"] == "ok"
     assert states["C++ compiler"]["state"] == "absent"
@@ -139,7 +139,7 @@ def test_doctor_finds_a_second_quadcore(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_prints_code_for_each_shell(shell, capsys):
-    assert "_ARGCOMPLETE" in printed(capsys, "completion", shell)
+    assert "_ARGCOMPLETE" in run_main(capsys, "completion", shell)
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ def test_commands_options_and_names_are_completed(line, word):
 def test_play_and_plot_take_folders_that_run_wrote(capsys):
     for model in ("quadrotor", "hexarotor"):
         main([HOVER[0], model, *HOVER[2:], "--controller", "geometric", "--out", f"out/{model}"])
-    assert printed(capsys, "play", "out/quadrotor", "-o", "one.html") == "written one.html\n"
+    assert run_main(capsys, "play", "out/quadrotor", "-o", "one.html") == "written one.html\n"
     # The rotors are those of each vehicle.
     main(["play", "out/quadrotor", "out/hexarotor", "-o", "both.html"])
     page = Path("both.html").read_text()
@@ -189,7 +189,7 @@ def test_play_takes_folders_of_comparisons(capsys):
     vary = ["--vary", "frame.mass=1,1.1", "--duration", "0.05", "--quiet", "--no-plots"]
     main(["compare", "quadrotor", *vary, "--controller", "geometric", "--out", "out"])
     words = ("play", "out", "--names", "a,b", "-o", "page.html")
-    assert printed(capsys, *words) == "written page.html\n"
+    assert run_main(capsys, *words) == "written page.html\n"
 
 
 def test_a_log_is_not_played_with_the_model_of_another_vehicle(capsys):
@@ -224,7 +224,7 @@ def test_a_controller_is_taken_from_a_file(text, capsys):
     Path("sub").mkdir()
     for folder in ("", "sub"):
         Path(folder, "mine.py").write_text(MINE)
-    out = printed(capsys, *HOVER[:-1], "--controller", text)
+    out = run_main(capsys, *HOVER[:-1], "--controller", text)
     assert f"{text}, 100 Hz" in out
     evaluate = ["evaluate", "--reference", "hover", "--duration", "0.05", "--quiet"]
     assert main([*evaluate, "--controller", f"{text},geometric:kp_z=9"]) == 0
@@ -235,7 +235,7 @@ def test_a_function_is_a_controller_and_helpers_next_to_it_are_found(capsys):
     Path("sub/helper.py").write_text("SPEEDS = [471, -471, 471, -471]\n")
     law = "from helper import SPEEDS\ndef law(t, state, reference):\n    return SPEEDS\n"
     Path("sub/law.py").write_text(f"{law}def _hidden(a, b, c): ...\ndef other(a): ...\n")
-    assert "sub/law.py, 500 Hz" in printed(capsys, *HOVER[:-1], "--controller", "sub/law.py")
+    assert "sub/law.py, 500 Hz" in run_main(capsys, *HOVER[:-1], "--controller", "sub/law.py")
 
 
 @pytest.mark.parametrize(

@@ -27,14 +27,14 @@ SPIN = {"engine": "eigen", "duration": 0.1, "commands": np.array([[0.0, 400.0]])
 SLOW = "air.sim_slow,motor.sim_slow"
 
 
-def edited(name, old, new):
+def edit_toy(name, old, new):
     """Write a copy of the toy with one change; returns its name."""
     assert faults.MODEL.count(old) == 1
     Path(name).write_text(faults.MODEL.replace(old, new))
     return name
 
 
-def told(capsys, *models):
+def list_differences(capsys, *models):
     """Differences that the command line tells, cells of each row, and its exit status."""
     status = main(["compare", *models, *FLIGHT])
     lines = capsys.readouterr().out.split("\n\n")[0].splitlines()[2:]
@@ -44,9 +44,9 @@ def told(capsys, *models):
 # What differs between the models
 
 
-def test_an_edited_tag_is_told_alone_with_both_values_and_lines(capsys):
-    edited("b.urdf", "<kp>5e-4</kp>", "<!-- stiffer,\nby far -->\n<kp>1e-3</kp>")
-    status, found = told(capsys, "toy.urdf", "b.urdf")
+def test_an_edited_tag_is_reported_alone_with_both_values_and_lines(capsys):
+    edit_toy("b.urdf", "<kp>5e-4</kp>", "<!-- stiffer,\nby far -->\n<kp>1e-3</kp>")
+    status, found = list_differences(capsys, "toy.urdf", "b.urdf")
     assert status == 0
     places = [f"{name}:{line_of(name, '<kp>')}" for name in ("toy.urdf", "b.urdf")]
     assert found == [["motor.kp", "5e-4", "1e-3", *places]]
@@ -64,9 +64,9 @@ def test_an_edited_tag_is_told_alone_with_both_values_and_lines(capsys):
         ('length="0.02"', 'length="0.03"', ["cylinder length", "0.02", "0.03"]),
     ],
 )
-def test_any_other_change_is_told_as_well(capsys, old, new, row):
-    edited("b.urdf", old, new)
-    _, found = told(capsys, "toy.urdf", "b.urdf")
+def test_any_other_change_is_reported_as_well(capsys, old, new, row):
+    edit_toy("b.urdf", old, new)
+    _, found = list_differences(capsys, "toy.urdf", "b.urdf")
     what, before, after, place, _ = found[0]
     assert what.endswith(row[0])
     assert [before, after] == row[1:]
@@ -75,8 +75,8 @@ def test_any_other_change_is_told_as_well(capsys, old, new, row):
 
 def test_a_removed_plugin_is_one_line(capsys):
     start = faults.MODEL.index('    <plugin name="odometry"')
-    edited("b.urdf", faults.MODEL[start : faults.MODEL.index("  </gazebo>", start)], "")
-    status, found = told(capsys, "toy.urdf", "b.urdf")
+    edit_toy("b.urdf", faults.MODEL[start : faults.MODEL.index("  </gazebo>", start)], "")
+    status, found = list_differences(capsys, "toy.urdf", "b.urdf")
     assert status == 0
     assert found[0] == [
         "plugin odometry",
@@ -95,7 +95,7 @@ def test_lines_of_a_xacro_are_those_of_its_file(capsys):
         .replace('<mass value="1"/>', '<mass value="${1 + 1}"/>')
     )
     Path("b.xacro").write_text(source)
-    _, found = told(capsys, "toy.urdf", "b.xacro")
+    _, found = list_differences(capsys, "toy.urdf", "b.xacro")
     place = f"b.xacro:{line_of('b.xacro', '${1 + 1}')}"
     assert found[0][-1] == place
     assert len(found) == 1
@@ -122,7 +122,7 @@ def test_numbers_written_otherwise_and_order_are_no_difference_but_that_of_joint
 @pytest.mark.parametrize("wrenches", [[], ["--wrenches"]], ids=["bare", "wrenches"])
 @pytest.mark.parametrize("engine", [name for name, _ in qc.engines()])
 def test_an_edit_and_vary_and_run_give_the_same_bytes(engine, wrenches):
-    edited("b.urdf", "<kp>5e-4</kp>", "<kp>0.00123</kp>")
+    edit_toy("b.urdf", "<kp>5e-4</kp>", "<kp>0.00123</kp>")
     flight = ["--engine", engine, *FLIGHT[2:], "--quiet", "--no-plots", *wrenches]
     assert main(["compare", "toy.urdf", "b.urdf", *flight, "--out", "e"]) == 0
     vary = ["--vary", "motor.kp=5e-4,0.00123"]
@@ -155,7 +155,7 @@ def test_a_grid_of_tags_engines_and_worlds_in_the_order_given():
     assert np.array_equal(result.logs[7].table, alone.run(0.02).table)
 
 
-def test_what_is_varied_is_not_told_as_what_all_flights_share():
+def test_varied_parameters_are_not_listed_as_common():
     vary = ["--vary", "engine=ode,eigen", "--spawn", "0,0,3", "--no-plots"]
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--out", "out"]) == 0
     shared = json.loads(Path("out/comparison.json").read_text())["flight"]

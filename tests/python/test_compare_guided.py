@@ -73,7 +73,7 @@ def test_each_flight_is_that_of_run(more):
     assert Path("eigen.csv").read_bytes() != Path("ode.csv").read_bytes()
 
 
-def test_distances_to_the_reference_are_told_in_table_page_and_terminal(capsys):
+def test_tracking_errors_are_in_table_page_and_terminal(capsys):
     arguments = [argument for argument in FLY if argument != "--quiet"]
     vary = ["--vary", "frame.mass=1.0,1.3"]
     guided = [*SPIRAL, "--engine", "eigen", *vary]
@@ -87,8 +87,8 @@ def test_distances_to_the_reference_are_told_in_table_page_and_terminal(capsys):
         away = np.linalg.norm(log.position - np.transpose(wanted), axis=1)
         assert float(row["rms_error"]) == pytest.approx(np.sqrt(np.mean(away**2)), rel=1e-6)
         assert float(row["max_error"]) == pytest.approx(away.max(), rel=1e-6)
-        for told in (row["rms_error"], row["max_error"]):
-            assert f"{float(told):.4g}" in shown and f"{float(told):.4g}" in page
+        for expected in (row["rms_error"], row["max_error"]):
+            assert f"{float(expected):.4g}" in shown and f"{float(expected):.4g}" in page
     flight = json.loads(Path("out/comparison.json").read_text())["flight"]
     assert flight["controller"] == "geometric:kp_xy=5" and flight["spawn"] == "on the reference"
     assert "commands" not in flight
@@ -110,7 +110,7 @@ def test_distances_to_the_reference_are_those_of_an_evaluation():
         assert found.table[f"{name}_error"].tolist() == measured
 
 
-def test_failures_are_told_below_the_table(capsys):
+def test_failures_are_reported_below_the_table(capsys):
     command = "compare quadrotor --controller own:Raises --reference hover --duration 0.2"
     assert main([*command.split(), "--vary", "odometry.positionNoise=0,0.1"]) == 3
     reason = "the flight failed at t = 0.100000 s: controller: ValueError: no idea"
@@ -123,7 +123,7 @@ def test_failures_are_told_below_the_table(capsys):
     ]
 
 
-def test_from_python_laws_objects_and_references_are_given_as_for_run():
+def test_from_python_controllers_and_references_are_given_as_for_run():
     class Hover:
         rate = 100
 
@@ -163,12 +163,12 @@ def test_a_controller_that_raises_is_a_row_with_the_time():
     vary = ["--vary", "motorpid_plugin.kp=0.0005,0.001"]
     compare(*vary, "--controller", "own:Raises", "--out", "out", "--no-plots", status=3)
     for row in rows():
-        told = "the flight failed at t = 0.100000 s: controller: ValueError: no idea ("
-        assert row["failure"].startswith(told)
+        expected = "the flight failed at t = 0.100000 s: controller: ValueError: no idea ("
+        assert row["failure"].startswith(expected)
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "expected"),
     [
         ("--commands c.csv --controller pd", "--commands and --controller exclude each other"),
         ("--reference spiral", "--reference requires a controller. Add --controller."),
@@ -181,20 +181,20 @@ def test_a_controller_that_raises_is_a_row_with_the_time():
         ("--reference 2", "To choose the baseline flight, use --against 2"),
     ],
 )
-def test_bad_guidance_is_one_line_and_nothing_is_flown(capsys, monkeypatch, arguments, told):
+def test_bad_guidance_is_one_line_and_nothing_is_flown(capsys, monkeypatch, arguments, expected):
     monkeypatch.setattr(qc.Simulation, "run", lambda *_, **__: pytest.fail("flown"))
     compare(*ENGINES, *arguments.split(), "--out", "out", status=2)
     error = capsys.readouterr().err
-    assert error.startswith("error: ") and error.count("\n") == 1 and told in error
+    assert error.startswith("error: ") and error.count("\n") == 1 and expected in error
 
 
 def test_from_python_bad_guidance_is_refused():
     vary = {"engine": ["eigen", "ode"]}
-    for given, told in (
+    for given, expected in (
         ({"reference": 1}, "`against` is the baseline"),
         ({"reference": "hover"}, "reference requires a controller"),
         ({"controller": "pd", "commands": [[0, 1, 1, 1, 1]]}, "Give one of them"),
         ({"controller": 3}, "controller is 3"),
     ):
-        with pytest.raises(qc.InputError, match=told):
+        with pytest.raises(qc.InputError, match=expected):
             qc.compare("quadrotor", vary, **given)

@@ -91,7 +91,7 @@ def test_more_flights_than_can_be_held_leave_metrics_only():
 
 
 @pytest.mark.parametrize("name", ["table.csv", "comparison.json", "report.html"])
-def test_what_cannot_be_written_is_told_before_anything_flies(name, toy, capsys):
+def test_an_unwritable_output_is_refused_before_any_flight(name, toy, capsys):
     Path("out", name).mkdir(parents=True)
     flight = ["--vary", "motor.kp=1e-4,2e-4", "--duration", "1e6"]
     assert main(["compare", "toy.urdf", *flight, "--out", "out", "--quiet"]) == 2

@@ -54,7 +54,7 @@ CASES = [
 ]
 
 
-def flown(case: Case, folder: Path, simulation: Optional[qc.Simulation] = None) -> bytes:
+def fly_case(case: Case, folder: Path, simulation: Optional[qc.Simulation] = None) -> bytes:
     """Every bit of a flight of 0.4 s."""
     simulation = simulation or case.simulation(folder)
     log = simulation.run(0.4, MANOEUVRE)
@@ -75,14 +75,14 @@ def folder(tmp_path_factory):
 def alone(folder):
     """What each case flies in a new process of its own."""
     with multiprocessing.get_context("spawn").Pool(2, maxtasksperchild=1) as pool:
-        flights = pool.starmap(flown, [(case, folder) for case in CASES], chunksize=1)
+        flights = pool.starmap(fly_case, [(case, folder) for case in CASES], chunksize=1)
     assert len(set(flights)) == len(CASES)
     return dict(zip(CASES, flights))
 
 
 def test_one_after_the_other(alone, folder):
     for case in [*CASES, *reversed(CASES)]:
-        assert flown(case, folder) == alone[case], case
+        assert fly_case(case, folder) == alone[case], case
 
 
 def test_in_turns(alone, folder):
@@ -119,7 +119,7 @@ def in_threads(work, count: int) -> None:
 def test_in_threads_of_different_engines_and_worlds(alone, folder):
     def work(i):
         for case in CASES[i:] + CASES[:i]:
-            assert flown(case, folder) == alone[case], case
+            assert fly_case(case, folder) == alone[case], case
 
     in_threads(work, 4)
 
@@ -131,7 +131,7 @@ def test_made_flown_and_dropped_in_three_threads(alone, folder):
         simulations.update((case, case.simulation(folder)) for case in CASES)
 
     def fly(_):
-        flights.update((case, flown(case, folder, simulations[case])) for case in CASES)
+        flights.update((case, fly_case(case, folder, simulations[case])) for case in CASES)
 
     def drop(_):
         simulations.clear()
@@ -157,16 +157,16 @@ def test_beside_flights_that_fail(alone, folder):
     failing.start()
     try:
         for case in CASES:
-            assert flown(case, folder) == alone[case], case
+            assert fly_case(case, folder) == alone[case], case
     finally:
         stop.set()
         failing.join()
 
 
 def test_in_forked_workers(alone, folder):
-    in_threads(lambda i: flown(CASES[i], folder), 2)  # the parent has used its threads before
+    in_threads(lambda i: fly_case(CASES[i], folder), 2)  # the parent has used its threads before
     with multiprocessing.get_context("fork").Pool(2) as pool:
-        flights = pool.starmap(flown, [(case, folder) for case in CASES], chunksize=1)
+        flights = pool.starmap(fly_case, [(case, folder) for case in CASES], chunksize=1)
     assert dict(zip(CASES, flights)) == alone
 
 
@@ -177,11 +177,11 @@ def test_a_simulation_flies_on_alike_on_both_sides_of_a_fork(folder):
         context = multiprocessing.get_context("fork")
         receiver, sender = context.Pipe(duplex=False)
         child = context.Process(
-            target=lambda case, one, to: to.send_bytes(flown(case, folder, one)),
+            target=lambda case, one, to: to.send_bytes(fly_case(case, folder, one)),
             args=(case, simulation, sender),
         )
         child.start()
-        here = flown(case, folder, simulation)
+        here = fly_case(case, folder, simulation)
         assert receiver.recv_bytes() == here, case
         child.join()
 
@@ -215,10 +215,10 @@ def test_what_others_print_while_a_xacro_is_expanded_is_not_lost(monkeypatch):
     swapped = []
     expand = xacro.process_file
 
-    def spied(*arguments, **options):
+    def spy(*arguments, **options):
         swapped.append(sys.stdout is not out)
         return expand(*arguments, **options)
 
-    monkeypatch.setattr(xacro, "process_file", spied)
+    monkeypatch.setattr(xacro, "process_file", spy)
     qc.Simulation("quadrotor", xacro_args={"sim_slow": 0.7})
     assert swapped == [False]

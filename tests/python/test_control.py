@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flights import ENGINES, NOISE, quadrotor
-from twin_law import Twin
+from twin_controller import Twin
 
 import quadcore as qc
 from quadcore.control import controllers, references
@@ -42,7 +42,7 @@ def max_at_the_end(log, reference, seconds=10):
     ("engine", "slow", "bar"),
     [("eigen", 1, 0.05e-3), ("ode", 1, 0.4e-3), ("gazebo11", 1, 0.8e-3), ("gazebo11", 10, 0.4e-3)],
 )
-def test_the_geometric_law_flies_the_spiral_of_the_thesis(engine, slow, bar):
+def test_the_geometric_controller_flies_the_spiral_of_the_thesis(engine, slow, bar):
     spiral = references.spiral()
     log = on(spiral, engine, slow).run(30, controller="geometric", reference=spiral, log_every=5)
     assert max_at_the_end(log, spiral) < bar
@@ -57,7 +57,7 @@ def test_the_geometric_law_flies_the_spiral_of_the_thesis(engine, slow, bar):
     ],
     ids=lambda value: value.name if isinstance(value, references.Shape) else "",
 )
-def test_the_geometric_law_flies_fast_references(reference, bar):
+def test_the_geometric_controller_flies_fast_references(reference, bar):
     log = on(reference).run(12, controller="geometric", reference=reference)
     assert errors(log, reference).max() < bar
 
@@ -77,41 +77,44 @@ def test_the_printed_gains_lose_the_spiral(engine, slow):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("law", FLYING)
-def test_every_law_settles_at_a_place_through_noise(engine, law):
+@pytest.mark.parametrize("controller", FLYING)
+def test_every_controller_settles_at_a_position_through_noise(engine, controller):
     hover = references.hover(x=0.3, y=-0.2, height=10.02, yaw=0.2)
     simulation = quadrotor(engine, parameters=at_slow(1, **NOISE), seed=3)
-    log = simulation.run(30, controller=law, reference=hover, log_every=10)
+    log = simulation.run(30, controller=controller, reference=hover, log_every=10)
     assert max_at_the_end(log, hover, 2) < 0.01
 
 
-def test_the_law_and_its_twin_in_numpy_fly_one_flight():
+def test_the_controller_and_its_twin_in_numpy_fly_one_flight():
     spiral = references.spiral()
-    logs = [on(spiral).run(2, controller=law, reference=spiral) for law in ("geometric", Twin())]
+    logs = [
+        on(spiral).run(2, controller=controller, reference=spiral)
+        for controller in ("geometric", Twin())
+    ]
     assert np.abs(logs[0].position - logs[1].position).max() < 1e-9
 
 
 @pytest.mark.parametrize("believed", [0.9, 1.1])
 def test_a_thrust_believed_wrong_is_made_up_for(believed):
     spiral = references.spiral()
-    law = controllers.geometric(believed_thrust=believed)
-    log = on(spiral).run(30, controller=law, reference=spiral, log_every=10)
+    controller = controllers.geometric(believed_thrust=believed)
+    log = on(spiral).run(30, controller=controller, reference=spiral, log_every=10)
     assert max_at_the_end(log, spiral) < 0.02
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_the_geometric_law_recovers_from_upside_down(engine):
+def test_the_geometric_controller_recovers_from_upside_down(engine):
     hover = references.hover(height=50)
     simulation = quadrotor(engine, parameters=at_slow(1), spawn=(0, 0, 50, np.pi, 0, 0))
-    law = controllers.geometric(fastest=900)
-    log = simulation.run(6, controller=law, reference=hover)
+    controller = controllers.geometric(fastest=900)
+    log = simulation.run(6, controller=controller, reference=hover)
     assert errors(log, hover)[log.time > 3].max() < 0.1
     assert log.position[:, 2].min() > 48
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("law", ["geometric", "indi", "lqr"])
-def test_wind_is_made_up_for(law, engine, tmp_path):
+@pytest.mark.parametrize("controller", ["geometric", "indi", "lqr"])
+def test_wind_is_made_up_for(controller, engine, tmp_path):
     windy = tmp_path / "windy.world"
     windy.write_text(
         "<sdf><world><wind><linear_velocity>2.2 -2 0.3</linear_velocity></wind></world></sdf>"
@@ -119,7 +122,7 @@ def test_wind_is_made_up_for(law, engine, tmp_path):
     hover = references.hover()
     parameters = at_slow(1, **{"drone_plugin.dragModel": "chapter2"})
     simulation = quadrotor(engine, parameters=parameters, world=windy)
-    log = simulation.run(22, controller=law, reference=hover, log_every=10)
+    log = simulation.run(22, controller=controller, reference=hover, log_every=10)
     assert errors(log, hover).max() > 0.01
     assert max_at_the_end(log, hover, 2) < 1e-3
 
@@ -127,7 +130,7 @@ def test_wind_is_made_up_for(law, engine, tmp_path):
 @pytest.mark.parametrize(
     ("engine", "slow"), [("ode", 1), ("gazebo11", 1), ("gazebo11", 10), ("eigen", 1), ("eigen", 10)]
 )
-def test_the_geometric_law_takes_off_hovers_and_lands(engine, slow):
+def test_the_geometric_controller_takes_off_hovers_and_lands(engine, slow):
     flight = references.takeoff_land(stay=8)
     simulation = quadrotor(engine, parameters=at_slow(slow), world="default", spawn=(0, 0, 0.0125))
     log = simulation.run(flight.end + 2, controller="geometric", reference=flight, log_every=10)
@@ -146,9 +149,9 @@ def test_the_geometric_law_takes_off_hovers_and_lands(engine, slow):
     ],
     ids=lambda value: value.name if isinstance(value, references.Shape) else "",
 )
-def test_the_geometric_law_flies_fast_references_in_gazebo(reference, options, bar):
-    law = controllers.geometric(**options)
-    log = on(reference, "gazebo11").run(12, controller=law, reference=reference, log_every=5)
+def test_the_geometric_controller_flies_fast_references_in_gazebo(reference, options, bar):
+    controller = controllers.geometric(**options)
+    log = on(reference, "gazebo11").run(12, controller=controller, reference=reference, log_every=5)
     assert errors(log, reference).max() < bar
 
 
@@ -161,7 +164,7 @@ def test_the_compensated_cascade_flies_the_spiral(engine, bar):
     assert max_at_the_end(log, spiral, 6) < bar
 
 
-def test_a_delay_is_that_of_a_law_that_waits_by_itself():
+def test_a_delay_equals_that_of_a_controller_that_waits_by_itself():
     hover = references.hover(x=0.1)
 
     class Late:
@@ -193,13 +196,13 @@ def test_a_run_may_begin_on_its_reference():
     simulation = quadrotor("eigen")
     simulation.set_state(references.start(simulation, circle))
     by_hand = simulation.run(0.5, controller="pd", reference=circle)
-    told = quadrotor("eigen").run(0.5, controller="pd", reference="circle", on_reference=True)
-    assert told.table.tobytes() == by_hand.table.tobytes()
+    by_option = quadrotor("eigen").run(0.5, controller="pd", reference="circle", on_reference=True)
+    assert by_option.table.tobytes() == by_hand.table.tobytes()
     with pytest.raises(qc.InputError, match="needs a reference to begin on"):
         quadrotor("eigen").run(0.5, controller="pd", on_reference=True)
 
 
-def test_references_and_laws_can_be_pickled():
+def test_references_and_controllers_can_be_pickled():
     for reference in (
         references.eight(width=2),
         references.waypoints([[0, 0, 0, 1], [2, 1, 0, 1]]),

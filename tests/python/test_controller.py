@@ -11,7 +11,7 @@ from flights import BUSY, ENGINES, HOVER, MANOEUVRE, bits, hold_height, quadroto
 import quadcore as qc
 
 
-class Law:
+class HeightController:
     """Holds a height by what it is told, and notes when it was asked."""
 
     def __init__(self, rate=None):
@@ -32,22 +32,22 @@ class Law:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_law_flies_the_bytes_that_a_loop_by_hand_flies(engine):
-    by_hand, by_law = (quadrotor(engine, parameters=BUSY) for _ in range(2))
+def test_a_controller_gives_the_bytes_of_a_loop_by_hand(engine):
+    by_hand, by_controller = (quadrotor(engine, parameters=BUSY) for _ in range(2))
     hold_height(by_hand, 300)
-    by_law.run(0.3, controller=Law(rate=1000))
-    assert bits(by_law) == bits(by_hand)
+    by_controller.run(0.3, controller=HeightController(rate=1000))
+    assert bits(by_controller) == bits(by_hand)
 
 
-def test_a_law_is_told_what_stands_on_any_topic():
+def test_a_controller_reads_any_topic():
     heard = []
 
-    def law(t, state, reference):
+    def controller(t, state, reference):
         heard.append((state.time, state.topic("odom")["stamp"], state.topic("vel_cmd")["count"]))
         return HOVER
 
     simulation = quadrotor()
-    simulation.run(0.01, controller=law)
+    simulation.run(0.01, controller=controller)
     assert [row[2] for row in heard] == list(range(len(heard))) and len(heard) == 5
     assert all(time == stamp for time, stamp, _ in heard)
     with pytest.raises(qc.InputError, match="topic 'odm' does not exist"):
@@ -66,36 +66,38 @@ def test_a_law_is_told_what_stands_on_any_topic():
         (250, 0.003, [0, *(-(-4 * k // 3) for k in range(1, 25))]),
     ],
 )
-def test_a_law_is_asked_at_the_first_step_at_or_after_each_period(rate, dt, steps):
-    law = Law(rate)
+def test_a_controller_is_called_at_the_first_step_at_or_after_each_period(rate, dt, steps):
+    controller = HeightController(rate)
     simulation = quadrotor("eigen", dt=dt)
-    simulation.run(0.1, controller=law)
+    simulation.run(0.1, controller=controller)
     expected = [step for step in steps if step < round(simulation.time / dt)]
-    assert np.round(np.array(law.asked) / dt).astype(int).tolist() == expected
-    assert law.begun == 1
+    assert np.round(np.array(controller.asked) / dt).astype(int).tolist() == expected
+    assert controller.begun == 1
 
 
-def test_logging_and_interruptions_do_not_change_when_a_law_is_asked():
-    laws = [Law(300) for _ in range(2)]
-    fine = quadrotor("eigen").run(1, controller=laws[0])
-    coarse = quadrotor("eigen").run(1, log_every=7, controller=laws[1], progress=lambda *_: None)
-    assert laws[0].asked == laws[1].asked
+def test_logging_and_interruptions_do_not_change_when_a_controller_is_called():
+    controllers = [HeightController(300) for _ in range(2)]
+    fine = quadrotor("eigen").run(1, controller=controllers[0])
+    coarse = quadrotor("eigen").run(
+        1, log_every=7, controller=controllers[1], progress=lambda *_: None
+    )
+    assert controllers[0].asked == controllers[1].asked
     assert np.array_equal(fine.table[::7], coarse.table)
 
 
 def test_a_run_goes_on_from_where_the_last_one_ended():
-    law = Law(rate=100)
+    controller = HeightController(rate=100)
     simulation = quadrotor("eigen")
-    simulation.run(0.015, controller=law)
-    simulation.run(0.015, controller=law)
-    assert np.allclose(law.asked, [0, 0.01, 0.015, 0.025], rtol=0, atol=1e-12)
-    assert law.begun == 2
+    simulation.run(0.015, controller=controller)
+    simulation.run(0.015, controller=controller)
+    assert np.allclose(controller.asked, [0, 0.01, 0.015, 0.025], rtol=0, atol=1e-12)
+    assert controller.begun == 2
 
 
-def test_a_law_is_told_what_the_odometry_says():
+def test_a_controller_is_given_the_measured_odometry():
     said = []
 
-    def law(t, state, reference):
+    def controller(t, state, reference):
         message = simulation.topic("odom")
         assert state.time == message["stamp"]
         assert state.position.tolist() == [message[name] for name in ("x", "y", "z")]
@@ -106,22 +108,22 @@ def test_a_law_is_told_what_the_odometry_says():
         return HOVER + np.array([3, -2, 1, 2])
 
     simulation = quadrotor("eigen", parameters=BUSY)
-    log = simulation.run(0.1, controller=law)
+    log = simulation.run(0.1, controller=controller)
     assert len(said) == 50
     assert np.abs(said[-1].position - log.position[-3]).max() > 1e-3  # noise
 
 
-def test_constant_speeds_by_law_and_by_table_are_one_flight():
-    by_law = quadrotor().run(0.2, controller=lambda t, state, reference: HOVER)
-    assert np.array_equal(by_law.table, quadrotor().run(0.2, [[0, *HOVER]]).table)
+def test_constant_speeds_by_controller_and_by_table_are_one_flight():
+    by_controller = quadrotor().run(0.2, controller=lambda t, state, reference: HOVER)
+    assert np.array_equal(by_controller.table, quadrotor().run(0.2, [[0, *HOVER]]).table)
 
 
-def wrong_after(t0, speeds):
+def fail_after(t0, speeds):
     return lambda t, state, reference: HOVER if t < t0 else speeds
 
 
 @pytest.mark.parametrize(
-    ("speeds", "told"),
+    ("speeds", "description"),
     [
         ([471] * 3, "[471, 471, 471]: the command has 3 rotor speeds"),
         (
@@ -133,27 +135,27 @@ def wrong_after(t0, speeds):
     ],
 )
 @pytest.mark.parametrize("t0", [0, 0.1])
-def test_what_is_no_command_ends_the_flight_and_its_log_stays(speeds, told, t0):
+def test_what_is_no_command_ends_the_flight_and_its_log_stays(speeds, description, t0):
     simulation = quadrotor("eigen")
     with pytest.raises(qc.FlightError) as failed:
-        simulation.run(1, controller=wrong_after(t0, speeds))
+        simulation.run(1, controller=fail_after(t0, speeds))
     assert str(failed.value) == (
-        f"the flight failed at t = {t0:f} s: the controller returned {told}. Return 4 rotor speeds "
-        "in rad/s."
+        f"the flight failed at t = {t0:f} s: the controller returned {description}. "
+        "Return 4 rotor speeds in rad/s."
     )
     assert failed.value.time == simulation.time == pytest.approx(t0)
     assert len(failed.value.log) == 1 + round(1000 * t0)
 
 
-def test_what_a_law_raises_comes_out_with_the_log_so_far():
-    def law(t, state, reference):
+def test_an_exception_of_a_controller_carries_the_log_so_far():
+    def controller(t, state, reference):
         if t > 0.0495:
             raise ZeroDivisionError("of the law")
         return HOVER
 
     simulation = quadrotor("eigen")
     with pytest.raises(ZeroDivisionError, match="of the law") as raised:
-        simulation.run(1, controller=law)
+        simulation.run(1, controller=controller)
     assert len(raised.value.log) == 51
     assert np.array_equal(raised.value.log.table, quadrotor("eigen").run(0.05, [[0, *HOVER]]).table)
 
@@ -170,9 +172,12 @@ class WithoutRate:
     [
         ({"controller": 5}, "controller is 5. Give a function or an object that is called as"),
         ({"controller": WithoutRate()}, "its rate is 'often'. Give calls per second, >= 1e-06"),
-        ({"controller": Law(0)}, "its rate is 0. Give"),
-        ({"controller": Law(np.inf)}, "its rate is inf. Give"),
-        ({"controller": Law(), "commands": MANOEUVRE}, "commands or a controller. Give one"),
+        ({"controller": HeightController(0)}, "its rate is 0. Give"),
+        ({"controller": HeightController(np.inf)}, "its rate is inf. Give"),
+        (
+            {"controller": HeightController(), "commands": MANOEUVRE},
+            "commands or a controller. Give one",
+        ),
     ],
 )
 def test_what_is_no_controller_is_refused_before_the_flight(arguments, says):

@@ -26,7 +26,7 @@ def bare(odometry=NOISY):
     )
 
 
-def guided(controller, reference=CIRCLE, odometry=NOISY):
+def guide(controller, reference=CIRCLE, odometry=NOISY):
     return with_plugins(
         bare(odometry), plugin("controller", controller), plugin("reference", reference)
     )
@@ -40,20 +40,20 @@ def circle():
 @pytest.mark.parametrize(
     "timing", [{}, {"rate": 300}, {"delay": 0.005}, {"rate": 170, "delay": 0.0131}]
 )
-def test_a_law_as_plugin_and_from_python_is_one_flight(engine, timing, hangar):
-    plugged = hangar(guided({"law": "geometric", "kp_xy": 7, **timing}), G, engine=engine)
+def test_a_controller_as_plugin_and_from_python_is_one_flight(engine, timing, hangar):
+    plugged = hangar(guide({"law": "geometric", "kp_xy": 7, **timing}), G, engine=engine)
     called = hangar(bare(), G, engine=engine)
     for simulation in (plugged, called):
         simulation.set_state(references.start(simulation, circle()))
-    law = controllers.geometric(kp_xy=7, **timing)
+    controller = controllers.geometric(kp_xy=7, **timing)
     one = plugged.run(1)
-    other = called.run(1, controller=law, reference=circle())
+    other = called.run(1, controller=controller, reference=circle())
     assert one.table.tobytes() == other.table.tobytes()
 
 
-@pytest.mark.parametrize("law", controllers.NAMES)
-def test_a_flight_goes_on_from_a_snapshot_bit_for_bit_with_every_law(law, hangar):
-    urdf = guided({"law": law, "delay": 0.007, "rate": 230})
+@pytest.mark.parametrize("controller", controllers.NAMES)
+def test_a_flight_goes_on_from_a_snapshot_bit_for_bit_with_every_controller(controller, hangar):
+    urdf = guide({"law": controller, "delay": 0.007, "rate": 230})
     first, second = (hangar(urdf, G, engine="eigen", spawn=(1, 0, 10)) for _ in range(2))
     first.run(0.3)
     snapshot = first.snapshot()
@@ -66,7 +66,7 @@ def test_a_flight_goes_on_from_a_snapshot_bit_for_bit_with_every_law(law, hangar
 
 
 def test_a_controller_beside_one_that_is_a_plugin_is_bad_input(hangar):
-    simulation = hangar(guided({"law": "pd"}), G, engine="eigen")
+    simulation = hangar(guide({"law": "pd"}), G, engine="eigen")
     with pytest.raises(qc.InputError, match=r"vel_cmd.*controller"):
         simulation.run(0.1, controller=lambda *_: [0] * 4)
     assert simulation.time == 0
@@ -76,30 +76,30 @@ def test_velocities_in_the_body_are_understood(hangar):
     logs = []
     for frame in ("world", "body"):
         tags = {"law": "geometric", "twistFrame": frame}
-        simulation = hangar(guided(tags, odometry={"twistFrame": frame}), G, engine="eigen")
+        simulation = hangar(guide(tags, odometry={"twistFrame": frame}), G, engine="eigen")
         simulation.set_state(references.start(simulation, circle()))
         logs.append(simulation.run(2))
     assert np.abs(logs[0].position - logs[1].position).max() < 1e-9
     with pytest.raises(qc.InputError, match="twistFrame"):
-        hangar(guided({"law": "pd"}, odometry={"twistFrame": "body"}), G)
+        hangar(guide({"law": "pd"}, odometry={"twistFrame": "body"}), G)
 
 
-def test_a_law_believes_in_the_vehicle_of_a_second_file(tmp_path, hangar):
+def test_a_controller_has_the_model_of_a_second_file(tmp_path, hangar):
     heavier = vehicle(CROSS, mass=1.2, com=(0.01, 0, 0), air={**LIFT, **DRAG}, motor=MOTOR)
     believed = tmp_path / "believed.urdf"
     # Its own controller would ask for a third one.
     believed.write_text(
         with_plugins(heavier, plugin("controller", {"law": "pd", "belief": believed}))
     )
-    plugged = hangar(guided({"law": "geometric", "belief": believed}), G, engine="ode")
+    plugged = hangar(guide({"law": "geometric", "belief": believed}), G, engine="ode")
     called = hangar(bare(), G, engine="ode")
-    law = controllers.geometric(belief=hangar(heavier, G, engine="eigen"))
+    controller = controllers.geometric(belief=hangar(heavier, G, engine="eigen"))
     one = plugged.run(0.5)
-    other = called.run(0.5, controller=law, reference=circle())
+    other = called.run(0.5, controller=controller, reference=circle())
     assert one.table.tobytes() == other.table.tobytes()
     believed.write_text(vehicle(CROSS[:3], air=LIFT, motor=MOTOR))
     with pytest.raises(qc.InputError, match="has 3 rotors, but the simulated vehicle has 4"):
-        hangar(guided({"law": "geometric", "belief": believed}), G)
+        hangar(guide({"law": "geometric", "belief": believed}), G)
 
 
 @pytest.mark.parametrize("shape", ["waypoints", "series"])
@@ -112,7 +112,7 @@ def test_a_reference_of_rows_is_read_from_a_file(shape, kind, tmp_path, hangar):
     else:
         lines = ["columns: [t, x, y, z, yaw]", "rows:", *(f"  - {row}" for row in rows)]
     path.write_text("\n".join(lines))
-    simulation = hangar(guided({"law": "pd"}, {"shape": shape, "rows": path}), G, engine="eigen")
+    simulation = hangar(guide({"law": "pd"}, {"shape": shape, "rows": path}), G, engine="eigen")
     wanted = getattr(references, shape)(rows)
     assert np.array_equal(getattr(references, shape)(path).rows, wanted.rows)
     for _ in range(20):
@@ -157,11 +157,11 @@ def test_a_reference_of_rows_is_read_from_a_file(shape, kind, tmp_path, hangar):
         ("rows.txt", "t,x,y,z\n", "rows can be read only from .csv and .yaml files"),
     ],
 )
-def test_rows_that_cannot_be_read_are_told_with_their_line(name, text, says, tmp_path, hangar):
+def test_rows_that_cannot_be_read_are_reported_with_their_line(name, text, says, tmp_path, hangar):
     path = tmp_path / name
     path.write_text(text)
     with pytest.raises(qc.InputError, match=says):
-        hangar(guided({"law": "pd"}, {"shape": "waypoints", "rows": path}), G)
+        hangar(guide({"law": "pd"}, {"shape": "waypoints", "rows": path}), G)
 
 
 def test_a_log_is_a_series_with_the_yaw_of_its_orientation(hangar, tmp_path):
@@ -180,17 +180,17 @@ def test_a_log_is_a_series_with_the_yaw_of_its_orientation(hangar, tmp_path):
     assert np.abs(second.position - log.position).max() < 1e-3
 
 
-def test_rows_and_shapes_that_need_none_are_told_apart(hangar, tmp_path):
+def test_rows_and_shapes_that_need_none_are_distinguished(hangar, tmp_path):
     with pytest.raises(qc.InputError, match="'waypoints' requires rows"):
-        hangar(guided({"law": "pd"}, {"shape": "waypoints"}), G)
+        hangar(guide({"law": "pd"}, {"shape": "waypoints"}), G)
     rows = tmp_path / "rows.csv"
     rows.write_text("t,x,y,z\n0,0,0,1\n1,0,0,1\n")
     with pytest.raises(qc.InputError, match="'hover' accepts no rows"):
-        hangar(guided({"law": "pd"}, {"shape": "hover", "rows": rows}), G)
+        hangar(guide({"law": "pd"}, {"shape": "hover", "rows": rows}), G)
 
 
 def test_the_reference_stands_on_its_topic(hangar):
-    simulation = hangar(guided({"law": "pd"}), G, engine="eigen")
+    simulation = hangar(guide({"law": "pd"}), G, engine="eigen")
     simulation.step(5)
     said, wanted = simulation.topic("reference"), circle()(0.004)
     assert said["stamp"] == pytest.approx(0.004)
@@ -214,4 +214,4 @@ def test_the_reference_stands_on_its_topic(hangar):
 )
 def test_what_no_controller_is_made_of_is_refused(controller, reference, says, hangar):
     with pytest.raises(qc.InputError, match=says):
-        hangar(guided(controller, reference), G)
+        hangar(guide(controller, reference), G)

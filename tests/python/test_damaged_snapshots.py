@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flights import bits, quadrotor
-from hooked import CARGO, G, fly, motored, with_fixed_link, with_plugins
+from hooked import CARGO, G, fly, make_motored, with_fixed_link, with_plugins
 from vehicles import plugin
 
 import quadcore as qc
 from quadcore import _core
 
 
-def damaged(snapshot, **changed):
+def damage(snapshot, **changed):
     """A snapshot with other contents, by way of its pickle."""
     state = snapshot.__getstate__()
     state.update(changed)
@@ -42,9 +42,9 @@ def test_a_damaged_snapshot_is_refused_and_changes_nothing(changed):
     simulation.step(10)
     snapshot, before = simulation.snapshot(), bits(simulation)
     with pytest.raises(qc.InputError, match=r"snapshot: it is damaged\. Take a new snapshot"):
-        simulation.restore(damaged(snapshot, **changed))
+        simulation.restore(damage(snapshot, **changed))
     assert bits(simulation) == before
-    simulation.restore(damaged(snapshot))  # whole
+    simulation.restore(damage(snapshot))  # whole
 
 
 VEHICLES = Path(__file__).parents[1] / "fuzz" / "vehicles"
@@ -57,16 +57,16 @@ def test_any_number_in_a_plugins_memory_flies_or_ends_the_flight(vehicle, number
     simulation.step(20)
     snapshot = simulation.snapshot()
     memory = snapshot.__getstate__()["plugins"]
-    told = set()
+    messages = set()
     for i in range(len(memory)):
         numbers = memory.copy()
         numbers[i] = number
         try:
-            simulation.restore(damaged(snapshot, plugins=numbers))
+            simulation.restore(damage(snapshot, plugins=numbers))
             simulation.step(3)
         except qc.FlightError as error:
-            told.add(str(error))
-    assert any("a counter in the plugin's state is damaged" in why for why in told)
+            messages.add(str(error))
+    assert any("a counter in the plugin's state is damaged" in why for why in messages)
     simulation.restore(snapshot)
     simulation.step(3)
 
@@ -74,24 +74,24 @@ def test_any_number_in_a_plugins_memory_flies_or_ends_the_flight(vehicle, number
 @pytest.mark.usefixtures("hook_plugins")
 def test_a_snapshot_that_is_refused_leaves_what_is_carried(hangar):
     cargo = plugin("cargo", {**CARGO, "release": 0.02})
-    urdf = with_plugins(motored(), cargo, plugin("odometry", {}))
+    urdf = with_plugins(make_motored(), cargo, plugin("odometry", {}))
     simulation = hangar(urdf, G, engine="eigen")
     laden = simulation.snapshot()
     fly(simulation, 40)
     mass, before = simulation.mass, bits(simulation)
     with pytest.raises(qc.InputError, match="another model or engine"):
-        simulation.restore(damaged(laden, engine=laden.__getstate__()["engine"][:-1]))
+        simulation.restore(damage(laden, engine=laden.__getstate__()["engine"][:-1]))
     assert simulation.mass == mass
     assert bits(simulation) == before
 
 
 def test_a_link_that_only_a_sensor_feels_makes_another_vehicle(hangar):
-    def mounted(x):
-        return hangar(with_fixed_link(motored(), "imu", 1e-9, (1e-15,) * 3, (x, 0, 0)), G)
+    def mount_imu(x):
+        return hangar(with_fixed_link(make_motored(), "imu", 1e-9, (1e-15,) * 3, (x, 0, 0)), G)
 
-    snapshot = mounted(0.1).snapshot()
+    snapshot = mount_imu(0.1).snapshot()
     with pytest.raises(qc.InputError, match="a different model"):
-        mounted(0.9).restore(snapshot)
+        mount_imu(0.9).restore(snapshot)
 
 
 def test_no_snapshot_is_none():

@@ -42,11 +42,11 @@ def test_the_grounded_flight_touches_the_ground():
 
 @everywhere
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(engine, place):
-    def flown(seed):
+    def fly_noisy(seed):
         return fly(quadrotor(engine, seed=seed, **place), 500)
 
-    assert flown(7) == flown(7)
-    assert flown(7) != flown(8)
+    assert fly_noisy(7) == fly_noisy(7)
+    assert fly_noisy(7) != fly_noisy(8)
 
 
 def test_two_runs_write_the_same_log(tmp_path):
@@ -161,11 +161,11 @@ def test_a_thousand_simulations_leave_no_memory_behind(toy):
         for _ in range(count):
             qc.Simulation("toy.urdf").run(0.001)
 
-    def grown():
+    def measure_growth():
         before = resident_bytes()
         come_and_go(1000)
         return resident_bytes() - before
 
     come_and_go(100)
     # A leak of one kilobyte per simulation grows each time; a new page of the allocator does not.
-    assert min(grown() for _ in range(3)) < 1e6
+    assert min(measure_growth() for _ in range(3)) < 1e6

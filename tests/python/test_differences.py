@@ -57,7 +57,7 @@ def document(text, name="b.urdf"):
     return Document(name, text)
 
 
-def test_each_difference_is_told_once_with_both_places():
+def test_each_difference_is_reported_once_with_both_places():
     found = compare_documents(document(BEFORE, "a.urdf"), document(AFTER))
     assert found == [
         Difference("link a/collision[2]/geometry/sphere radius", "2", "3", "a.urdf:6", "b.urdf:6"),
@@ -95,7 +95,7 @@ def test_lines_come_from_the_files_that_a_document_was_made_of():
     assert found["link a/mass value"].at == "c.xacro:9"
 
 
-def test_joints_in_another_order_are_told_with_the_first_places():
+def test_joints_in_another_order_are_reported_with_their_first_positions():
     def robot(*names):
         lines = [f'<joint name="{name}" type="t"/>' for name in names]
         return document("\n".join(["<robot>", *lines, "</robot>"]))
@@ -183,7 +183,7 @@ def test_differences_are_those_of_each_state_row_by_row():
 def test_angles_on_either_side_of_half_a_turn_are_near_each_other():
     """Rolls and yaws of 179 and -178 degrees differ by 3 degrees, not by 357."""
 
-    def turned(axis, degrees):
+    def make_turned(axis, degrees):
         half = np.radians(degrees) / 2
         row = np.zeros(14)
         row[3 + axis], row[6] = np.sin(half), np.cos(half)
@@ -194,13 +194,13 @@ def test_angles_on_either_side_of_half_a_turn_are_near_each_other():
         column = list(flight_differences.list_states(1)).index(name)
         for before, after, apart in ((179, -178, 3), (-178, 179, -3), (10, 30, 20), (91, -91, 178)):
             final, largest = flight_differences.compute_final_and_max(
-                turned(axis, before), turned(axis, after)
+                make_turned(axis, before), make_turned(axis, after)
             )
             assert final[column] == pytest.approx(np.radians(apart), abs=1e-12)
             assert largest[column] == pytest.approx(np.radians(abs(apart)), abs=1e-12)
 
 
-def pitched(*degrees):
+def make_pitched(*degrees):
     """A body that turns about its y axis."""
     rows = [Rotation.from_euler("Y", angle, degrees=True).as_quat() for angle in degrees]
     table = np.zeros((len(rows), 14))
@@ -210,7 +210,7 @@ def pitched(*degrees):
 
 def test_a_flip_of_the_angles_beyond_the_vertical_is_no_difference():
     """At 89 degrees of pitch roll and yaw are 0, at 91 they are 180."""
-    below, beyond = pitched(60, 89), pitched(62, 91)
+    below, beyond = make_pitched(60, 89), make_pitched(62, 91)
     found = dict(
         zip(
             flight_differences.list_states(0),
@@ -223,7 +223,7 @@ def test_a_flip_of_the_angles_beyond_the_vertical_is_no_difference():
 
 def test_a_looping_is_drawn_without_a_jump():
     looping = np.arange(0, 730, 10.0)
-    angles = np.degrees(unwrap_angles(pitched(*looping).rpy))
+    angles = np.degrees(unwrap_angles(make_pitched(*looping).rpy))
     assert np.allclose(angles, np.stack([0 * looping, looping, 0 * looping], axis=1), atol=1e-6)
     assert unwrap_angles(np.zeros((0, 3))).shape == (0, 3)
 

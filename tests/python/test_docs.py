@@ -137,9 +137,11 @@ def test_the_reference_is_what_the_generator_writes():
 
 
 def test_the_reference_of_cpp_has_every_public_header_once():
-    told = re.findall(r"doxygenfile:: (\S+)", (ROOT / "docs/reference/cpp.rst").read_text())
+    listed_headers = re.findall(
+        r"doxygenfile:: (\S+)", (ROOT / "docs/reference/cpp.rst").read_text()
+    )
     headers = (ROOT / "cpp").glob("*/include/quadcore/**/*.hpp")
-    assert sorted(told) == sorted(header.name for header in headers)
+    assert sorted(listed_headers) == sorted(header.name for header in headers)
 
 
 def test_the_readme_is_short():

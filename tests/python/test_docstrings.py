@@ -22,7 +22,7 @@ PUBLIC = {
 THINGS = {n: value for n, value in PUBLIC.items() if callable(value) and not get_args(value)}
 
 
-def told(member, name):
+def read_text(member, name):
     """What a docstring says beside the signatures that pybind11 writes."""
     text = inspect.getdoc(member) or ""
     return re.sub(rf"^(\d+\. )?{name}\(.*\)( -> .*)?$", "", text, flags=re.MULTILINE).strip()
@@ -40,26 +40,26 @@ def members(thing):
 
 @pytest.mark.parametrize("name", THINGS)
 def test_each_class_and_function_has_a_docstring(name):
-    assert told(THINGS[name], name.rpartition(".")[2])
+    assert read_text(THINGS[name], name.rpartition(".")[2])
 
 
-def is_told(kind, name, member):
+def has_text(kind, name, member):
     """Whether a member has a docstring, or a line among the attributes of its class."""
-    if (callable(member) or isinstance(member, property)) and told(member, name):
+    if (callable(member) or isinstance(member, property)) and read_text(member, name):
         return True
     classes = [inspect.getdoc(each) or "" for each in kind.__mro__]
     return any(re.search(rf"^(\w+, )*{name}(, \w+)*( :|$)", text, re.MULTILINE) for text in classes)
 
 
 @pytest.mark.parametrize("name", [name for name, thing in THINGS.items() if inspect.isclass(thing)])
-def test_each_member_is_told(name):
-    untold = [
+def test_each_member_is_documented(name):
+    undocumented = [
         member
         for member, value in members(THINGS[name])
-        if not is_told(THINGS[name], member, value)
+        if not has_text(THINGS[name], member, value)
     ]
-    # The core's own class is told of where it is used.
-    assert untold == (["command_topic"] if name == "quadcore._core.Simulation" else [])
+    # The pages that use the core's own class describe it.
+    assert undocumented == (["command_topic"] if name == "quadcore._core.Simulation" else [])
 
 
 def functions(name):
@@ -84,17 +84,17 @@ def arguments(function):
 
 
 @pytest.mark.parametrize("name", [name for name in THINGS if "._" not in name])
-def test_each_argument_is_told(name):
-    untold = []
+def test_each_argument_is_documented(name):
+    undocumented = []
     for called, function in functions(name):
         kinds = getattr(function, "__mro__", [function])
-        told_of = "\n".join(inspect.getdoc(kind) or "" for kind in kinds)
-        untold += [
+        docstrings = "\n".join(inspect.getdoc(kind) or "" for kind in kinds)
+        undocumented += [
             f"{called}({argument})"
             for argument in arguments(function)
-            if not re.search(rf"^(\w+, )*{argument}(, \w+)*( :|$)", told_of, re.MULTILINE)
+            if not re.search(rf"^(\w+, )*{argument}(, \w+)*( :|$)", docstrings, re.MULTILINE)
         ]
-    assert untold == []
+    assert undocumented == []
 
 
 @pytest.mark.parametrize("module", [qc, chapter2], ids=lambda module: module.__name__)

@@ -67,8 +67,8 @@ def built():
     """Make an object of every class that can be made from here."""
     simulation = qc.Simulation("quadrotor", engine="eigen")
     model = qc.read_model("quadrotor")
-    law = _core.Controller("geometric", simulation, simulation, {}, [])
-    some = [simulation, qc.BatchSimulation(n=2), qc.BatchSimulation(n=2).snapshot(), law]
+    controller = _core.Controller("geometric", simulation, simulation, {}, [])
+    some = [simulation, qc.BatchSimulation(n=2), qc.BatchSimulation(n=2).snapshot(), controller]
     some += [model.document, model.ignored_elements, model.links[0], model.joints[0]]
     some += [simulation.plugins[0], simulation.plugins[0].parameters[0], simulation.topics["odom"]]
     some += [_core.Run(simulation), _core.Flight(simulation, None, 1), _core.Reference()]

@@ -34,9 +34,9 @@ def simulation(seed, engine="eigen", **parameters):
 class Watched:
     """A law, and how far its estimate is from the truth at each call."""
 
-    def __init__(self, law, flown):
-        self.rate, self.law, self.flown = law.rate, law, flown
-        self.reset = law.reset
+    def __init__(self, controller, flown):
+        self.rate, self.law, self.flown = controller.rate, controller, flown
+        self.reset = controller.reset
         self.errors, self.believed = [], []
 
     def __call__(self, t, state, reference):
@@ -62,18 +62,18 @@ def fly(reference, seed, seconds=10, **options):
     from estimated import Geometric
 
     flown = simulation(seed, **options)
-    law = Watched(Geometric(), flown)
+    controller = Watched(Geometric(), flown)
     log = flown.run(
-        seconds, controller=law, reference=reference, on_reference=True, log_every=10,
+        seconds, controller=controller, reference=reference, on_reference=True, log_every=10,
     )  # fmt: skip
     wanted = np.array([reference(t).position for t in log.time])
     away = np.linalg.norm(log.position - wanted, axis=1)
-    late = np.array(law.errors)[len(law.errors) // 4 :]
-    return away, late, np.array(law.believed)[-len(late) :]
+    late = np.array(controller.errors)[len(controller.errors) // 4 :]
+    return away, late, np.array(controller.believed)[-len(late) :]
 
 
 @pytest.mark.parametrize("shape", ["hover", "spiral"])
-def test_the_law_flies_within_decimetres_though_the_receiver_errs_by_metres(shape, here):
+def test_the_controller_flies_within_decimetres_though_the_receiver_errs_by_metres(shape, here):
     away, late, believed = fly(getattr(qc.references, shape)(), seed=1)
     rms = np.sqrt(np.mean(late**2, axis=0))
     print(shape, "away", away.max(), np.sqrt(np.mean(away**2)), "errors", rms)
@@ -94,9 +94,9 @@ def test_nothing_is_taken_from_the_odometry_after_the_start(here):
 
 def test_it_is_one_more_row_of_an_evaluation(here, tmp_path):
     arguments = ["--scenario", "sensors.yaml", "--engine", "eigen", "--xacro", "sim_slow:=1"]
-    laws = ["--controller", "geometric,estimated:Geometric", "--reference", "hover"]
+    controllers_given = ["--controller", "geometric,estimated:Geometric", "--reference", "hover"]
     out = ["--duration", "2", "--out", str(tmp_path / "out"), "--quiet"]
-    assert main(["evaluate", *laws, *arguments, *out]) == 0
+    assert main(["evaluate", *controllers_given, *arguments, *out]) == 0
     rows = (tmp_path / "out" / "table.csv").read_text().splitlines()
     assert len(rows) == 3 and "estimated:Geometric" in rows[2]
 

@@ -55,14 +55,14 @@ def test_the_page_says_why_the_printed_gains_are_lost(capsys):
     command = [*FLY, "--controller", "pid_thesis,pid_thesis:kd_xy=2.5", "--reference", "spiral"]
     assert main([*command, "--no-plots", "--out", "out"]) == 0
     page = Path("out/report.html").read_text()
-    told = page + capsys.readouterr().out
+    texts = page + capsys.readouterr().out
     for text in (
         "pid_thesis (eigen), x, y: pole at 0.231 +- 1.63i 1/s; cause: Kd Kp = 0.3 is not above Ki",
         "pid_thesis (eigen), yaw: pole at 10.4 +- 11.4i 1/s; cause: the zero at 2 b w0 sim_slow",
         "pid_thesis:kd_xy=2.5 (eigen), yaw: pole at 10.4 +- 11.4i 1/s; cause: the zero at 2 b w0",
     ):
         assert text in page
-        assert told.count(text) == 2
+        assert texts.count(text) == 2
     assert "pid_thesis:kd_xy=2.5 (eigen), x, y" not in page
 
 
@@ -71,15 +71,15 @@ def test_the_file_tells_all_that_flew():
     more = ["--controller-rate", "250", "--delay", "0.004", "--world", "default.world"]
     assert main([*command, *more, "--dt", "0.002", "--quiet", "--out", "out"]) == 0
     content = json.loads(Path("out/evaluation.json").read_text())
-    (law,) = content["laws"]
-    assert (law["law"], law["model"], law["rate"], law["delay"]) == (
+    (controller,) = content["laws"]
+    assert (controller["law"], controller["model"], controller["rate"], controller["delay"]) == (
         "geometric", "quadrotor", 250, 0.004
     )  # fmt: skip
-    assert law["parameters"]["kp_xy"] == 7
-    assert {"kp_z", "lead", "believed_thrust"} <= set(law["parameters"])
-    told = content["plan"]
-    assert (told["world"], told["dt"], told["log_every"]) == ("default.world", 0.002, 5)
-    assert (told["seeds"], told["duration"], told["xacro"]) == ([0], 1, {"sim_slow": "1"})
+    assert controller["parameters"]["kp_xy"] == 7
+    assert {"kp_z", "lead", "believed_thrust"} <= set(controller["parameters"])
+    plan = content["plan"]
+    assert (plan["world"], plan["dt"], plan["log_every"]) == ("default.world", 0.002, 5)
+    assert (plan["seeds"], plan["duration"], plan["xacro"]) == ([0], 1, {"sim_slow": "1"})
     assert content["quadcore"] == qc.__version__
     assert (content["flights"][0]["rate"], content["flights"][0]["updates"]) == (250, 250)
     (timing,) = rows("out/timing.csv")
@@ -112,7 +112,7 @@ def test_a_document_cannot_make_an_evaluation_remove_other_files():
 
 
 @pytest.mark.parametrize("name", ["table.csv", "evaluation.json", "timing.csv", "report.html"])
-def test_what_cannot_be_written_is_told_before_anything_flies(name, capsys):
+def test_an_unwritable_output_is_refused_before_any_flight(name, capsys):
     Path("out", name).mkdir(parents=True)
     command = [*FLY, "--controller", "own:Never", "--reference", "hover", "--out", "out"]
     assert main(command) == 2

@@ -146,7 +146,7 @@ def test_what_cannot_be_evaluated_is_one_line(capsys, arguments, says):
     assert says in errors[0]
 
 
-def test_names_with_commas_and_parameters_are_told_apart():
+def test_names_with_commas_and_parameters_are_distinguished():
     text = "pd,geometric:kp_xy=4,lead=0,own:Law,circle:rate=1,g.yaml"
     names = ["pd", "geometric:kp_xy=4,lead=0", "own:Law", "circle:rate=1", "g.yaml"]
     assert several_calls(text) == names
@@ -191,7 +191,7 @@ def test_names_with_commas_and_parameters_are_told_apart():
         ({"log_every": 2000}, "log_every is 2000 but the flight has 1000 steps"),
     ],
 )
-def test_arguments_of_other_types_are_told(arguments, says):
+def test_arguments_of_other_types_are_reported(arguments, says):
     given = {"controllers": "pd", "references": "hover", "duration": 1.0, **arguments}
     with pytest.raises(qc.InputError, match=says):
         qc.evaluate(**given)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from flights import ENGINES, quadrotor
-from hooked import CHAPTER2, G, assert_same_bytes, fly, motored, with_plugins
+from hooked import CHAPTER2, G, assert_same_bytes, fly, make_motored, with_plugins
 from vehicles import AIR, CROSS, HAND, LIFT, MOTOR, ODD, SKEW, plugin, start, vehicle, wrenches
 
 import quadcore as qc
@@ -19,16 +19,16 @@ def test_effectiveness_scales_thrust_and_reaction_and_leaves_the_drag(drag_model
     simulation = hangar(vehicle(ODD, air={**CHAPTER2, "dragModel": drag_model}), engine=engine)
     moving = {"rotor_velocity": (471, -465, 480, -475), "linear_velocity": (3, -2, 1)}
 
-    def exerted(*left):
+    def measure_wrenches(*left):
         simulation.reset()
         if left:
             simulation.publish("effectiveness", left)
         simulation.step()
         return wrenches(start(simulation, **moving))
 
-    whole, none = exerted(), exerted(0, 0, 0, 0)
-    alone = [exerted(*np.eye(4)[i]) for i in range(4)]
-    some = exerted(0.3, 1, 0, 0.8)
+    whole, none = measure_wrenches(), measure_wrenches(0, 0, 0, 0)
+    alone = [measure_wrenches(*np.eye(4)[i]) for i in range(4)]
+    some = measure_wrenches(0.3, 1, 0, 0.8)
     for term in ("thrust", "reaction"):
         shares = [one[term] - none[term] for one in alone]
         assert np.allclose(whole[term] - none[term], sum(shares), rtol=1e-12, atol=1e-15)
@@ -40,21 +40,21 @@ def test_effectiveness_scales_thrust_and_reaction_and_leaves_the_drag(drag_model
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_rotors_that_are_told_to_be_whole_fly_the_same_bytes(engine, hangar):
-    told, untold = (hangar(motored(), G, engine=engine) for _ in range(2))
-    told.publish("effectiveness", [1] * 4)
-    told.publish("power", [1] * 4)
-    assert_same_bytes(fly(told, 200), fly(untold, 200))
+def test_published_full_effectiveness_leaves_the_bytes(engine, hangar):
+    published, plain = (hangar(make_motored(), G, engine=engine) for _ in range(2))
+    published.publish("effectiveness", [1] * 4)
+    published.publish("power", [1] * 4)
+    assert_same_bytes(fly(published, 200), fly(plain, 200))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_fault_by_time_is_the_same_as_one_by_topic(engine, hangar):
     faulty = with_plugins(
-        motored(), plugin("fault", {"losses": "0.1 2 0.4  0.2 4 0.7", "cuts": "0.15 3"})
+        make_motored(), plugin("fault", {"losses": "0.1 2 0.4  0.2 4 0.7", "cuts": "0.15 3"})
     )
     by_time = hangar(faulty, G, engine=engine)
-    by_topic = hangar(motored(), G, engine=engine)
-    by_fault = hangar(with_plugins(motored(), plugin("fault", {})), G, engine=engine)
+    by_topic = hangar(make_motored(), G, engine=engine)
+    by_fault = hangar(with_plugins(make_motored(), plugin("fault", {})), G, engine=engine)
     flown = fly(by_time, 300).table[1:]
     pieces = {by_topic: [], by_fault: []}
     for steps, e, p, fault in (
@@ -73,7 +73,7 @@ def test_a_fault_by_time_is_the_same_as_one_by_topic(engine, hangar):
             rows.append(fly(simulation, steps).table[1:])
     for rows in pieces.values():
         assert np.concatenate(rows).tobytes() == flown.tobytes()
-    whole = fly(hangar(motored(), G, engine=engine), 300).table[1:]
+    whole = fly(hangar(make_motored(), G, engine=engine), 300).table[1:]
     assert whole[:100].tobytes() == flown[:100].tobytes() and (whole[101:] != flown[101:]).any()
 
 
@@ -104,7 +104,7 @@ def test_rotors_whose_motors_are_all_cut_coast_to_rest_in_the_air(engine, sim_sl
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_fault_survives_a_snapshot(engine, hangar):
     tags = {"losses": "0.15 1 0.2", "cuts": "0.05 2"}
-    simulation = hangar(with_plugins(motored(), plugin("fault", tags)), G, engine=engine)
+    simulation = hangar(with_plugins(make_motored(), plugin("fault", tags)), G, engine=engine)
     fly(simulation, 100)
     middle = simulation.snapshot()
     second = fly(simulation, 150)
@@ -134,7 +134,7 @@ def test_a_fault_survives_a_snapshot(engine, hangar):
     ],
 )
 def test_a_fault_that_cannot_be_is_refused_with_its_line(tags, says, hangar):
-    urdf = with_plugins(motored(), plugin("fault", tags))
+    urdf = with_plugins(make_motored(), plugin("fault", tags))
     line = 1 + urdf[: urdf.index("libfault")].count("\n")
     with pytest.raises(qc.InputError, match=f"urdf:{line}: plugin 'fault' .*{says}"):
         hangar(urdf, G)
@@ -152,14 +152,14 @@ def test_a_fault_that_cannot_be_is_refused_with_its_line(tags, says, hangar):
     ],
 )
 def test_a_share_that_is_none_ends_the_flight(topic, values, says, hangar):
-    simulation = hangar(motored(), G)
+    simulation = hangar(make_motored(), G)
     simulation.command([400] * 4)
     simulation.publish(topic, values)
     with pytest.raises(qc.FlightError, match=says):
         simulation.step()
 
 
-def lagging(tags, inertia=(1e9, 1e9, 1e9), **options):
+def make_lagging(tags, inertia=(1e9, 1e9, 1e9), **options):
     urdf = vehicle(CROSS, mass=1e9, inertia=inertia, air={**HAND, "inducedDragCoeff": 0})
     return with_plugins(urdf, plugin("motor", tags))
 
@@ -168,7 +168,9 @@ def lagging(tags, inertia=(1e9, 1e9, 1e9), **options):
 @pytest.mark.parametrize("sim_slow", [1, 5])
 def test_a_motor_follows_with_its_time_constants(sim_slow, engine, hangar):
     tags = {"timeConstantUp": 0.05, "timeConstantDown": 0.2, "sim_slow": sim_slow}
-    urdf = lagging(tags).replace("<rotorThrust", f"<sim_slow>{sim_slow}</sim_slow><rotorThrust", 1)
+    urdf = make_lagging(tags).replace(
+        "<rotorThrust", f"<sim_slow>{sim_slow}</sim_slow><rotorThrust", 1
+    )
     simulation = hangar(urdf, engine=engine)
     simulation.step(10)
     assert not simulation.state.rotor_velocity.any()
@@ -189,7 +191,7 @@ def test_a_motor_follows_with_its_time_constants(sim_slow, engine, hangar):
 def test_a_delay_shifts_what_a_motor_does_by_whole_steps(engine, hangar):
     tags = {"timeConstantUp": 0.05, "timeConstantDown": 0.2}
     prompt, late = (
-        hangar(lagging({**tags, "delay": delay}), engine=engine) for delay in (0, 0.007)
+        hangar(make_lagging({**tags, "delay": delay}), engine=engine) for delay in (0, 0.007)
     )
     rates = {}
     for simulation in (prompt, late):
@@ -223,13 +225,13 @@ def test_a_motor_in_flight_survives_a_snapshot_and_is_cut(engine, hangar):
     assert np.allclose(simulation.state.rotor_velocity, coasting, rtol=0.02)
 
 
-def test_what_a_motor_cannot_do_is_told(hangar):
+def test_settings_beyond_a_motor_are_reported(hangar):
     with pytest.raises(
         qc.InputError, match=r"<delay> 0.0015 is not a whole number of steps of 0.001"
     ):
-        hangar(lagging({"delay": 0.0015}))
+        hangar(make_lagging({"delay": 0.0015}))
     with pytest.warns(qc.QuadcoreWarning, match="a time constant is too short for the step"):
-        hangar(lagging({"timeConstantUp": 0.0001}))
+        hangar(make_lagging({"timeConstantUp": 0.0001}))
 
 
 GROUND = "<sdf><world><include><uri>model://ground_plane</uri></include></world></sdf>"
@@ -257,7 +259,7 @@ def test_near_the_ground_a_rotor_lifts_more(engine, tmp_path):
             )
 
 
-def test_ground_effect_where_there_is_no_ground_is_told(hangar):
+def test_ground_effect_where_there_is_no_ground_is_reported(hangar):
     urdf = with_plugins(vehicle(air=AIR), plugin("ground_effect", {}))
     with pytest.warns(qc.QuadcoreWarning, match="the world has no ground plane"):
         hangar(urdf)
@@ -274,20 +276,20 @@ def test_the_shipped_vehicles_hear_of_faults():
     assert simulation.state.rotor_velocity[0] == pytest.approx(0, abs=0.05)
 
 
-def test_a_law_that_begins_in_mid_flight_believes_the_vehicle_as_it_was_made(hangar):
+def test_a_controller_that_starts_in_mid_flight_has_the_model_of_the_undamaged_vehicle(hangar):
     """What has befallen it since is told on topics, or not at all."""
-    simulation = hangar(with_plugins(motored(), plugin("fault", {"losses": "0.001 1 0.9"})), G)
-    law = qc.controllers.geometric()
+    simulation = hangar(with_plugins(make_motored(), plugin("fault", {"losses": "0.001 1 0.9"})), G)
+    controller = qc.controllers.geometric()
     start = simulation.state.copy()
-    law.reset(simulation)
-    hover = law(0, start, qc.references.hover()(0))
+    controller.reset(simulation)
+    hover = controller(0, start, qc.references.hover()(0))
     simulation.step(10)
-    law.reset(simulation)
-    assert np.array_equal(law(0, start, qc.references.hover()(0)), hover)
+    controller.reset(simulation)
+    assert np.array_equal(controller(0, start, qc.references.hover()(0)), hover)
 
 
 def test_two_faults_on_one_topic_before_one_step_end_the_flight(hangar):
-    simulation = hangar(with_plugins(motored(), plugin("fault", {})), G)
+    simulation = hangar(with_plugins(make_motored(), plugin("fault", {})), G)
     simulation.publish("fault", (1, 0, 0))
     simulation.publish("fault", (2, 0, 0))
     with pytest.raises(qc.FlightError, match="two messages were published in one step"):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.io
-from processes import FALL, ran, refused, script
+from processes import FALL, run_command, run_refused, script
 
 import quadcore as qc
 from quadcore.cli import main
@@ -54,7 +54,7 @@ def test_a_disk_that_fills_up_keeps_whole_rows(tmp_path):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))
 
-    refused(*FALL, "--log", "log.csv", preexec_fn=limit)
+    run_refused(*FALL, "--log", "log.csv", preexec_fn=limit)
     text = Path("log.csv").read_text()
     assert text.endswith("\n") and 3000 < len(text) <= 4000
     rows = np.loadtxt("log.csv", delimiter=",", skiprows=1)
@@ -98,19 +98,19 @@ def test_a_name_that_is_too_long_is_one_line():
         [*FALL, "--out", name],
         [*FALL, "--commands", name + ".csv"],
     ):
-        assert "File name too long" in refused(*arguments)
+        assert "File name too long" in run_refused(*arguments)
 
 
 def test_a_name_that_is_no_utf8_is_a_name(toy):
     model = os.fsdecode(b"m\xff.urdf")
     Path(model).write_text(Path("toy.urdf").read_text())
-    done = ran("run", model, "--duration", "0.01", "--log", os.fsdecode(b"l\xff.csv"))
+    done = run_command("run", model, "--duration", "0.01", "--log", os.fsdecode(b"l\xff.csv"))
     assert done.returncode == 0 and "l\\udcff.csv" in done.stdout
     assert Path(os.fsdecode(b"l\xff.csv")).exists()
     vary = ["--vary", "motor.kp=1e-4,2e-4", "--out", "out", "--duration", "0.01"]
-    assert ran("compare", model, "toy.urdf", *vary).returncode == 0
+    assert run_command("compare", model, "toy.urdf", *vary).returncode == 0
     Path(model).write_text("<robot>")
-    assert "m\\xff.urdf:1: " in refused("info", model)
+    assert "m\\xff.urdf:1: " in run_refused("info", model)
     folder = os.fsdecode(b"p\xff")
     Path(folder).mkdir()
     qc.load_plugin_path(folder)
@@ -119,6 +119,6 @@ def test_a_name_that_is_no_utf8_is_a_name(toy):
 
 def test_a_name_cannot_steer_a_terminal(toy):
     Path("\x1b[31mred.urdf").write_text("<robot>")
-    assert "\x1b" not in refused("info", "\x1b[31mred.urdf")
-    done = ran("run", "toy.urdf", "--duration", "0.01", "--log", "\x1b[31m.csv")
+    assert "\x1b" not in run_refused("info", "\x1b[31mred.urdf")
+    done = run_command("run", "toy.urdf", "--duration", "0.01", "--log", "\x1b[31m.csv")
     assert "\x1b" not in done.stdout and "\\x1b[31m.csv" in done.stdout

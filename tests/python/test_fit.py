@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flights import NOISE
-from processes import ran, refused
+from processes import run_command, run_refused
 
 import quadcore as qc
 from quadcore.model.overrides import list_link_values
@@ -77,11 +77,11 @@ def wide(t):
 def flown():
     """A flight under the thesis' noise, logged at 100 Hz, and its commands."""
     simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": 1}, parameters=NOISE, seed=5)
-    law = Excited()
+    controller = Excited()
     log = simulation.run(
-        10, controller=law, reference=wide, log_every=10, topics=("odom", "vel_cmd")
+        10, controller=controller, reference=wide, log_every=10, topics=("odom", "vel_cmd")
     )
-    return log, np.array(law.rows)
+    return log, np.array(controller.rows)
 
 
 @pytest.fixture(scope="module")
@@ -251,12 +251,14 @@ def test_the_command_writes_the_model_and_tells_what_is_known(flown, in_empty_fo
         "c.csv",
     ]
     free = ["--free", ",".join(["drone_plugin.rotorThrustCoeff", *LINEAR, "frame.mass"])]
-    done = ran(*words, *free, "--sensed=odom", "--set", "frame.mass=0.9", "-o", "fitted.urdf")
+    done = run_command(
+        *words, *free, "--sensed=odom", "--set", "frame.mass=0.9", "-o", "fitted.urdf"
+    )
     assert done.returncode == 0, done.stderr
     assert f"only the sum is identifiable: {SUM} = " in done.stdout
     assert "singular values" in done.stdout and "held out" in done.stdout
     assert qc.Simulation("fitted.urdf").mass == pytest.approx(1.04, rel=0.01)
-    for bad, told in (
+    for bad, expected in (
         (
             ["--free", "drone_plugin.k"],
             "free drone_plugin.k: model quadrotor has no such parameter",
@@ -277,7 +279,7 @@ def test_the_command_writes_the_model_and_tells_what_is_known(flown, in_empty_fo
             "topic 'gps' with pose and velocities does not exist (topics: odom",
         ),
     ):
-        assert told in refused(*words, *bad, "-o", "bad.urdf")
+        assert expected in run_refused(*words, *bad, "-o", "bad.urdf")
     assert not Path("bad.urdf").exists()
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import ran, refused
+from processes import run_command, run_refused
 from test_fit import Excited, wide
 
 import quadcore as qc
@@ -25,9 +25,9 @@ def flown():
     own = {name: value for name, value in TRUE.items() if name != "motorpid_plugin.kp"}
     parameters = {**own, **OTHER}
     simulation = qc.Simulation(engine="eigen", xacro_args=KNOWN, parameters=parameters)
-    law = Excited()
-    log = simulation.run(2.5, controller=law, reference=wide, log_every=10)
-    return log, np.array(law.rows)
+    controller = Excited()
+    log = simulation.run(2.5, controller=controller, reference=wide, log_every=10)
+    return log, np.array(controller.rows)
 
 
 def test_arguments_of_xacro_are_found_beside_a_tag(flown):
@@ -91,12 +91,12 @@ def test_the_command_writes_the_expanded_document(flown, in_empty_folder):
     words = ["fit", "quadrotor", "--log=log.csv", "--commands=c.csv", "-o", "fitted.urdf"]
     given = ["--xacro", "sim_slow:=1", "--xacro", "arm_mass:=0.01", "--xacro", "arm_length:=0.12"]
     odd = ["--set", "propeller2.mass=0.013"]
-    done = ran(*words, *given, *odd, "--free", MASS, "--xacro", "frame_mass:=0.9")
+    done = run_command(*words, *given, *odd, "--free", MASS, "--xacro", "frame_mass:=0.9")
     assert done.returncode == 0, done.stderr
     assert "xacro" not in Path("fitted.urdf").read_text()
     assert qc.Simulation("fitted.urdf").mass == pytest.approx(1.07 + 0.04 + 0.043, rel=1e-4)
     Path("fitted.urdf").rename("plain.urdf")
-    for model, name, told in (
+    for model, name, expected in (
         (
             "quadrotor",
             "xacro.drag",
@@ -105,7 +105,7 @@ def test_the_command_writes_the_expanded_document(flown, in_empty_folder):
         ("quadrotor", "xacro.fram_mass", "has no such parameter. Did you mean 'xacro.frame_mass'?"),
         ("plain.urdf", MASS, f"free {MASS}: model quadrotor has no such parameter"),
     ):
-        assert told in refused("fit", model, *words[2:], "--free", name)
+        assert expected in run_refused("fit", model, *words[2:], "--free", name)
     assert not Path("fitted.urdf").exists()
 
 

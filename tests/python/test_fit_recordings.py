@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import ran, refused
+from processes import run_command, run_refused
 from test_player import content_of
 
 import quadcore as qc
@@ -149,12 +149,14 @@ def test_local_polynomials_are_exact_for_cubics_and_noise_is_estimated():
 def test_a_copy_of_a_fitted_flight_is_refused(tmp_path):
     copy = tmp_path / "other.csv.gz"
     shutil.copy(REP4, copy)
-    said = refused("fit", "crazyflie", "--log", REP4, "--judge", copy, "-o", tmp_path / "a.urdf")
+    said = run_refused(
+        "fit", "crazyflie", "--log", REP4, "--judge", copy, "-o", tmp_path / "a.urdf"
+    )
     assert "100 % of the rows are those of" in said and "Judge on another flight." in said
 
 
 def test_a_missing_log_is_refused_whatever_follows(tmp_path):
-    said = refused(
+    said = run_refused(
         "fit", "crazyflie", "--log", tmp_path / "missing.csv", "--log", REP4, "-o",
         tmp_path / "a.urdf",
     )  # fmt: skip
@@ -212,7 +214,7 @@ def test_measured_rotor_speeds_without_commands_give_back_the_truth(tmp_path):
 
 
 def test_a_fit_to_one_real_flight_predicts_another_better_than_baselines(tmp_path):
-    done = ran(
+    done = run_command(
         "fit", "crazyflie", "--log", REP4, "--judge", REP11, "-o", tmp_path / "fitted.urdf",
         "--out", tmp_path / "report", "--free",
         "inputs.speed,inputs.battery,drone_plugin.inducedDragCoeff,drone_plugin.rollDampingCoeff,"
@@ -230,7 +232,9 @@ def test_a_fit_to_one_real_flight_predicts_another_better_than_baselines(tmp_pat
     assert "The fitted model predicts the position better than the initial model" in page
     assert [flight["name"] for flight in content_of(page)["flights"]] == ["measured", "predicted"]
     assert "exponent: 1.0" in (tmp_path / "fitted.inputs.yaml").read_text()
-    again = ran("predict", tmp_path / "fitted.urdf", "--log", REP11, "--out", tmp_path / "p")
+    again = run_command(
+        "predict", tmp_path / "fitted.urdf", "--log", REP11, "--out", tmp_path / "p"
+    )
     assert again.returncode == 0, again.stderr
     found = (tmp_path / "p/errors.csv").read_text().splitlines()[1]
     assert float(found.split(",")[5]) == pytest.approx(errors["fitted model", "position"][2])
@@ -238,10 +242,10 @@ def test_a_fit_to_one_real_flight_predicts_another_better_than_baselines(tmp_pat
 
 def test_a_model_worse_than_a_baseline_ends_with_status_3_unless_forced(tmp_path):
     wrong = ("--set", "drone_plugin.rollDampingCoeff=0.01", "--out", tmp_path / "p")
-    done = ran("predict", "crazyflie", "--log", REP4, *wrong)
+    done = run_command("predict", "crazyflie", "--log", REP4, *wrong)
     assert done.returncode == 3
     assert re.search(r"at 0.25 s: the model errs by .* or add --force", done.stderr)
-    assert ran("predict", "crazyflie", "--log", REP4, *wrong, "--force").returncode == 0
+    assert run_command("predict", "crazyflie", "--log", REP4, *wrong, "--force").returncode == 0
 
 
 def test_a_cut_propeller_is_named(tmp_path):
@@ -250,7 +254,7 @@ def test_a_cut_propeller_is_named(tmp_path):
         for n in (0, 1)
         for word in ("--sound", f"{CRAZYPAD}/normal_flight_E8_log0{n}_excerpt.gz")
     ]
-    done = ran(
+    done = run_command(
         "fit", "crazyflie", "--log", CRAZYPAD / "cut_propeller_M3_3mm_E8_log01_excerpt.gz", *sound,
         "--free", "rotors.factor", "-o", tmp_path / "damaged.urdf",
     )  # fmt: skip
@@ -259,7 +263,7 @@ def test_a_cut_propeller_is_named(tmp_path):
     assert loss and 15 < int(loss[1]) < 30
     rotors = qc.Simulation(tmp_path / "damaged.urdf", engine="eigen")
     assert rotors.rotor_count == 4
-    alone = refused(
+    alone = run_refused(
         "fit", "crazyflie", "--log", CRAZYPAD / "cut_propeller_M3_3mm_E8_log01_excerpt.gz",
         "--free", "rotors.factor", "-o", tmp_path / "damaged.urdf",
     )  # fmt: skip

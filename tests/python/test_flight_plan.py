@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from flights import BUSY, MANOEUVRE, digest, flown_elsewhere
+from flights import BUSY, MANOEUVRE, digest, fly_in_process
 
 import quadcore as qc
 
@@ -55,9 +55,9 @@ def test_a_plan_flies_elsewhere_as_here(tmp_path, monkeypatch):
     plan = a_plan(commands="c.csv")
     os.remove("c.csv")
     source = "def fly(plan):\n    return plan.fly().table.tobytes()\n"
-    assert flown_elsewhere(source, plan) == digest(a_plan().fly().table.tobytes())
+    assert fly_in_process(source, plan) == digest(a_plan().fly().table.tobytes())
     source = "def fly(plan):\n    return plan.fingerprint().encode()\n"
-    assert flown_elsewhere(source, plan) == digest(plan.fingerprint().encode())
+    assert fly_in_process(source, plan) == digest(plan.fingerprint().encode())
 
 
 def test_the_fingerprint_is_of_what_flies_not_of_where_it_lies(toy, tmp_path):

@@ -13,7 +13,7 @@ import pytest
 from flights import ENGINES, HOVER, with_pilot
 from imported import Imported, library
 from pages import ROOT, run
-from processes import ran, refused
+from processes import run_command, run_refused
 
 import quadcore as qc
 
@@ -41,7 +41,7 @@ def fmus(tmp_path_factory):
 
 
 @pytest.fixture
-def imported(fmus, tmp_path):
+def import_fmu(fmus, tmp_path):
     """Maker of instances, which end with the test."""
     open_ones = []
 
@@ -78,7 +78,7 @@ def test_an_importer_finds_nothing_wrong_and_every_variable_explained(fmus, engi
     assert variables["odom.x"].causality == variables["x"].causality == "output"
 
 
-def measured(vehicle):
+def read_odometry(vehicle):
     """What the odometry of a simulation or of an FMU says, as a law reads it."""
     message = vehicle.topic("odom")
     parts = {
@@ -93,21 +93,23 @@ def measured(vehicle):
 
 
 @pytest.mark.parametrize("engine", ["gazebo11", "eigen"])
-def test_a_law_that_closes_the_loop_flies_the_spiral_as_on_the_simulation(engine, imported):
+def test_a_controller_that_closes_the_loop_flies_the_spiral_as_on_the_simulation(
+    engine, import_fmu
+):
     """Every bit of states, odometry and wrenches, at whole steps of the law's rate."""
     fast = {"xacro_args": {"max_velocity": "1e6"}}
-    instance = imported(engine, **fast)
+    instance = import_fmu(engine, **fast)
     simulation = qc.Simulation("quadrotor", engine=engine, **fast)
     reference = qc.references.spiral()
-    laws = [qc.controllers.geometric() for _ in range(2)]
-    for law in laws:
-        law.reset(simulation)
+    controllers = [qc.controllers.geometric() for _ in range(2)]
+    for controller in controllers:
+        controller.reset(simulation)
     parts = ["fx", "fy", "fz", "tx", "ty", "tz"]
     terms = [f"wrench_{term}.{part}" for term in simulation.wrench_terms for part in parts]
     for k in range(500):
         t = k * 0.002
-        for law, fly in zip(laws, (instance, simulation)):
-            fly.command(law(t, measured(fly), reference(t)))
+        for controller, fly in zip(controllers, (instance, simulation)):
+            fly.command(controller(t, read_odometry(fly), reference(t)))
         instance.step(0.002)
         simulation.step(2)
     assert instance.row() == logged_row(simulation)
@@ -119,8 +121,8 @@ def test_a_law_that_closes_the_loop_flies_the_spiral_as_on_the_simulation(engine
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_state_saved_restored_and_serialised_flies_on_bit_for_bit(engine, imported):
-    instance = imported(engine, parameters=SHORT)
+def test_a_state_saved_restored_and_serialised_flies_on_bit_for_bit(engine, import_fmu):
+    instance = import_fmu(engine, parameters=SHORT)
 
     def on():
         instance.command(HOVER * 1.02)
@@ -139,15 +141,17 @@ def test_a_state_saved_restored_and_serialised_flies_on_bit_for_bit(engine, impo
         instance.time = time
         assert on() == expected
         instance.slave.freeFMUstate(saved)
-    other = imported(engine)  # another instance, whose parameters are those of the state afterwards
+    other = import_fmu(
+        engine
+    )  # another instance, whose parameters are those of the state afterwards
     other.slave.setFMUstate(other.slave.deSerializeFMUstate(data))
     assert other.slave.serializeFMUstate(other.slave.getFMUstate()) == data
     instance, instance.time = other, time
     assert on() == expected
 
 
-def test_a_damaged_or_foreign_state_is_refused(imported):
-    instance, other = imported("eigen"), imported("eigen", spawn=(0, 0, 3))
+def test_a_damaged_or_foreign_state_is_refused(import_fmu):
+    instance, other = import_fmu("eigen"), import_fmu("eigen", spawn=(0, 0, 3))
     data = instance.slave.serializeFMUstate(instance.slave.getFMUstate())
     for damaged in (data[:-3], data + b"1", data[:102] + b"\xff" * 8 + data[110:]):
         with pytest.raises(Exception, match="fmi2DeSerializeFMUstate"):
@@ -158,9 +162,9 @@ def test_a_damaged_or_foreign_state_is_refused(imported):
     assert "belongs to another FMU" in other.said[-1][1]
 
 
-def test_parameters_are_those_of_the_simulation(imported):
+def test_parameters_are_those_of_the_simulation(import_fmu):
     parameters = {**SHORT, "drone_plugin.dragModel": "chapter2", "odometry.publishTf": False}
-    instance = imported(
+    instance = import_fmu(
         "ode", parameters={**parameters, "seed": 7, "spawn.z": 3.5, "spawn.yaw": 1.0}
     )
     simulation = qc.Simulation(
@@ -175,8 +179,8 @@ def test_parameters_are_those_of_the_simulation(imported):
     assert instance.slave.getString([instance.reference("drone_plugin.dragModel")]) == [b"chapter2"]
 
 
-def test_a_tunable_parameter_changes_in_flight(imported):
-    instance, simulation = imported("eigen"), qc.Simulation("quadrotor", "eigen")
+def test_a_tunable_parameter_changes_in_flight(import_fmu):
+    instance, simulation = import_fmu("eigen"), qc.Simulation("quadrotor", "eigen")
     for fly in (instance, simulation):
         fly.command(HOVER)
     instance.step(0.01)
@@ -190,8 +194,8 @@ def test_a_tunable_parameter_changes_in_flight(imported):
     assert instance.row() == logged_row(tuned) != logged_row(simulation)
 
 
-def test_what_is_wrong_is_told_through_the_logger(imported, fmus):
-    instance = imported("eigen", initialise=False, parameters={"motorpid_plugin.kp": -1.0})
+def test_errors_are_reported_through_the_logger(import_fmu, fmus):
+    instance = import_fmu("eigen", initialise=False, parameters={"motorpid_plugin.kp": -1.0})
     with pytest.raises(Exception, match="fmi2EnterInitializationMode"):
         instance.initialise()
     status, text = instance.said[-1]
@@ -222,18 +226,18 @@ def test_what_is_wrong_is_told_through_the_logger(imported, fmus):
     instance.step()
 
 
-def test_a_flight_that_fails_says_when_and_why(imported):
-    instance = imported("eigen", parameters={"motorpid_plugin.kp": 1e9})
+def test_a_flight_that_fails_says_when_and_why(import_fmu):
+    instance = import_fmu("eigen", parameters={"motorpid_plugin.kp": 1e9})
     instance.command([1e300] * 4)
     with pytest.raises(Exception, match="fmi2DoStep"):
         instance.step(1.0)
     assert "t = " in instance.said[-1][1]
 
 
-def test_different_fmus_fly_in_one_process_without_a_word_to_each_other(imported):
+def test_different_fmus_fly_in_one_process_without_a_word_to_each_other(import_fmu):
     ground = {"world": "default", "spawn": (0, 0, 0.3)}
     kinds = [("ode", {}), ("gazebo11", {}), ("ode", ground), ("eigen", {"model": "hexarotor"})]
-    flying = [imported(engine, **options) for engine, options in kinds]
+    flying = [import_fmu(engine, **options) for engine, options in kinds]
     twins = [qc.Simulation(engine=engine, **options) for engine, options in kinds]
     for k in range(20):
         for instance, twin in zip(flying, twins):
@@ -249,7 +253,7 @@ def test_different_fmus_fly_in_one_process_without_a_word_to_each_other(imported
 
 
 @pytest.mark.parametrize("engine", ["ode", "gazebo11"])
-def test_instances_fly_side_by_side_in_threads(engine, imported):
+def test_instances_fly_side_by_side_in_threads(engine, import_fmu):
     """Each in a thread that did not make it."""
 
     def fly(instance):
@@ -259,27 +263,27 @@ def test_instances_fly_side_by_side_in_threads(engine, imported):
         return instance.row()
 
     with ThreadPoolExecutor(4) as pool:
-        rows = list(pool.map(fly, [imported(engine) for _ in range(4)]))
+        rows = list(pool.map(fly, [import_fmu(engine) for _ in range(4)]))
     simulation = qc.Simulation("quadrotor", engine)
     simulation.command(HOVER)
     simulation.step(200)
     assert rows == [logged_row(simulation)] * 4
 
 
-def test_files_that_tags_name_travel_inside(imported, tmp_path):
+def test_files_that_tags_name_travel_inside(import_fmu, tmp_path):
     folder = tmp_path / "piloted"
-    instance = imported("eigen", model=with_pilot(folder))
+    instance = import_fmu("eigen", model=with_pilot(folder))
     (folder / "gains.yaml").unlink()
     instance.initialise()
     instance.step(0.1)
     assert "vel_cmd.w1" in instance.variables and "w1" not in instance.variables
 
 
-def test_plugins_of_the_machine_do_not_come_in(imported, fmus, tmp_path, monkeypatch):
+def test_plugins_of_the_machine_do_not_come_in(import_fmu, fmus, tmp_path, monkeypatch):
     path = fmus("eigen")
     (tmp_path / "libaerodynamic_plugin.so").write_text("no library")
     monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(tmp_path))
-    instance = imported(path=path)
+    instance = import_fmu(path=path)
     instance.step()
 
 
@@ -392,13 +396,15 @@ def variables_of(folder):
 
 def test_the_command_line_writes_one(tmp_path):
     path = tmp_path / "x.fmu"
-    done = ran("export-fmu", "quadrotor", "--engine", "eigen", "--set", "odometry.rate=100",
+    done = run_command("export-fmu", "quadrotor", "--engine", "eigen", "--set", "odometry.rate=100",
                "-o", str(path))  # fmt: skip
     assert done.returncode == 0 and done.stdout == f"written {path}\n"
     variables = fmpy.read_model_description(str(path)).modelVariables
     assert [v.start for v in variables if v.name == "odometry.rate"] == ["100"]
-    assert "Name a file that ends in .fmu" in refused("export-fmu", "quadrotor", "-o", "x.zip")
-    assert "nor a shipped model" in refused("export-fmu", "nothing", "-o", str(tmp_path / "y.fmu"))
+    assert "Name a file that ends in .fmu" in run_refused("export-fmu", "quadrotor", "-o", "x.zip")
+    assert "nor a shipped model" in run_refused(
+        "export-fmu", "nothing", "-o", str(tmp_path / "y.fmu")
+    )
     assert not (tmp_path / "y.fmu").exists()
 
 

@@ -49,7 +49,7 @@ def fmus(tmp_path_factory):
 
 
 @pytest.fixture
-def imported(fmus, tmp_path):
+def import_fmu(fmus, tmp_path):
     """Maker of instances, which end with the test."""
     made, folders = [], (tmp_path / str(i) for i in itertools.count())
 
@@ -80,19 +80,19 @@ def outputs(instance):
 
 def rows(instance, speeds=None, pieces=4, length=0.02, each=lambda: None):
     """Every bit of all outputs on the way; not even NaN differs."""
-    told = []
+    values = []
     for _ in range(pieces):
         if speeds is not None:
             instance.command(speeds)
         each()
         instance.step(length)
-        told.append(outputs(instance))
-    return told
+        values.append(outputs(instance))
+    return values
 
 
-def test_motors_turn_whose_other_inputs_are_set_to_their_declared_starts(imported):
+def test_motors_turn_whose_other_inputs_are_set_to_their_declared_starts(import_fmu):
     """As by an importer that applies them all."""
-    alone, applied = (imported("quadrotor", "gazebo11") for _ in range(2))
+    alone, applied = (import_fmu("quadrotor", "gazebo11") for _ in range(2))
     motors = ("w1", "w2", "w3", "w4")
     others = starts(applied, without=motors)
     assert others == {f"{t}.s{i}": 1.0 for t in ("effectiveness", "power") for i in (1, 2, 3, 4)}
@@ -112,10 +112,10 @@ MODELS = ["quadrotor", "hexarotor", "neo11", "crazyflie", "ardrone", "firefly", 
 @pytest.mark.parametrize("commanded", [False, True])
 @pytest.mark.parametrize("model", MODELS)
 def test_inputs_that_are_set_to_their_declared_starts_fly_as_if_nobody_had(
-    model, commanded, imported
+    model, commanded, import_fmu
 ):
     """Before the initialisation, after it, and shares and pushes anew at each step."""
-    untouched, before, after, always = (imported(model, initialise=False) for _ in range(4))
+    untouched, before, after, always = (import_fmu(model, initialise=False) for _ in range(4))
     motors = [name for name in starts(before) if name[0] == "w" and name[1:].isdigit()]
     speeds = [400.0, -410.0, 420.0, -430.0, 415.0, -405.0][: len(motors)] if commanded else None
     if commanded and not motors:
@@ -133,8 +133,8 @@ def test_inputs_that_are_set_to_their_declared_starts_fly_as_if_nobody_had(
     assert rows(always, speeds, each=lambda: set_all(always, idle)) == expected
 
 
-def test_speeds_of_0_are_a_command_from_the_start_on(imported):
-    instance, simulation = imported("quadrotor"), qc.Simulation("quadrotor", "eigen")
+def test_speeds_of_0_are_a_command_from_the_start_on(import_fmu):
+    instance, simulation = import_fmu("quadrotor"), qc.Simulation("quadrotor", "eigen")
     for speeds in (0 * HOVER, HOVER):
         for fly in (instance, simulation):
             fly.command(speeds)
@@ -144,12 +144,12 @@ def test_speeds_of_0_are_a_command_from_the_start_on(imported):
     assert instance.row()[-4:] == list(simulation.state.rotor_velocity)
 
 
-def test_a_start_is_what_the_topic_holds_before_anybody_publishes(imported, tmp_path):
+def test_a_start_is_what_the_topic_holds_before_anybody_publishes(import_fmu, tmp_path):
     """And what a flight is like whose caller publishes just that."""
     path = with_all_that_listens(tmp_path)
     unsaid, said = (qc.Simulation(path, "eigen") for _ in range(2))
     topics = [t for t in unsaid.topics.values() if t.writer is None]
-    declared = starts(imported("lab"))
+    declared = starts(import_fmu("lab"))
     for topic in topics:
         prefix = "" if topic.name == "vel_cmd" else f"{topic.name}."
         held = {field: unsaid.topic(topic.name)[field] for field in topic.fields}
@@ -163,8 +163,8 @@ def test_a_start_is_what_the_topic_holds_before_anybody_publishes(imported, tmp_
     assert (unsaid.run(0.1).table == said.run(0.1).table).all()
 
 
-def test_a_field_that_is_set_leaves_the_others_as_they_act(imported):
-    instance, simulation = imported("quadrotor"), qc.Simulation("quadrotor", "eigen")
+def test_a_field_that_is_set_leaves_the_others_as_they_act(import_fmu):
+    instance, simulation = import_fmu("quadrotor"), qc.Simulation("quadrotor", "eigen")
     instance.set("effectiveness.s2", 0.5)
     simulation.publish("effectiveness", [1, 0.5, 1, 1])
     for fly in (instance, simulation):
@@ -174,8 +174,8 @@ def test_a_field_that_is_set_leaves_the_others_as_they_act(imported):
     assert instance.get("x", "y", "z") == list(simulation.state.position)
 
 
-def test_what_was_said_may_be_taken_back_to_the_start(imported):
-    instance, simulation = imported("quadrotor"), qc.Simulation("quadrotor", "eigen")
+def test_what_was_said_may_be_taken_back_to_the_start(import_fmu):
+    instance, simulation = import_fmu("quadrotor"), qc.Simulation("quadrotor", "eigen")
     for share, speeds in ((0.5, HOVER), (1.0, HOVER), (1.0, 0 * HOVER)):
         instance.set("effectiveness.s2", share)
         simulation.publish("effectiveness", [1, share, 1, 1])
@@ -187,9 +187,9 @@ def test_what_was_said_may_be_taken_back_to_the_start(imported):
     assert instance.row()[-4:] == list(simulation.state.rotor_velocity)
 
 
-def test_a_start_that_is_set_later_is_said(imported):
+def test_a_start_that_is_set_later_is_said(import_fmu):
     """What was taken up in the meantime can be let go, what was let go taken up."""
-    instance = imported("lab")
+    instance = import_fmu("lab")
     instance.step(0.1)
     assert instance.get("payload_carried.mass", "later_carried.mass") == [0.0, 0.1]
     instance.set("payload.riding", 1.0)
@@ -198,8 +198,8 @@ def test_a_start_that_is_set_later_is_said(imported):
     assert instance.get("payload_carried.mass", "later_carried.mass") == [0.2, 0.0]
 
 
-def test_what_was_tuned_is_not_taken_for_the_start(imported):
-    instance = imported("lab", initialise=False)
+def test_what_was_tuned_is_not_taken_for_the_start(import_fmu):
+    instance = import_fmu("lab", initialise=False)
     instance.set("payload.pickUp", 10.0)
     instance.set("payload.riding", 1.0)
     instance.initialise()
@@ -207,8 +207,8 @@ def test_what_was_tuned_is_not_taken_for_the_start(imported):
     assert instance.get("payload_carried.mass") == [0.2]
 
 
-def test_a_reference_of_zeros_is_one_once_the_flight_is_under_way(imported):
-    waiting, called = (imported("piloted") for _ in range(2))
+def test_a_reference_of_zeros_is_one_once_the_flight_is_under_way(import_fmu):
+    waiting, called = (import_fmu("piloted") for _ in range(2))
     names = [name for name in starts(called) if name.startswith("reference.")]
     assert names
     for instance in (waiting, called):
@@ -220,8 +220,8 @@ def test_a_reference_of_zeros_is_one_once_the_flight_is_under_way(imported):
     assert called.get("z")[0] > waiting.get("z")[0] + 0.05  # where nobody calls it falls
 
 
-def test_saved_restored_and_reset_inputs_are_still_unsaid(imported):
-    instance, other = imported("lab"), imported("lab")
+def test_saved_restored_and_reset_inputs_are_still_unsaid(import_fmu):
+    instance, other = import_fmu("lab"), import_fmu("lab")
     own = starts(instance, without=("w1", "w2", "w3", "w4"))
     set_all(instance, own)
     slave = instance.slave

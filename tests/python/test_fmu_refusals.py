@@ -190,7 +190,7 @@ def test_a_variable_is_asked_for_by_its_type(instance):
     assert "variable drone_plugin.dragModel: the value is a null pointer. Give a text." in said
 
 
-def test_an_importer_may_have_nothing_to_be_told_by(instance):
+def test_an_importer_may_have_no_logger(instance):
     """No logger, or no functions at all: what is wrong is still a status."""
     slave, description = instance.slave, instance.description
     where = (instance.folder / "resources").as_uri().encode()
@@ -224,15 +224,15 @@ def test_a_flag_of_a_saved_state_is_0_or_1(instance):
     """A command of zeros differs from none in a flag alone: it waits for the next step."""
     slave = instance.slave
 
-    def saved():
+    def save_state():
         state = slave.getFMUstate()
         data = slave.serializeFMUstate(state)
         slave.freeFMUstate(state)
         return data
 
-    before = saved()
+    before = save_state()
     instance.command([0.0] * 4)
-    after = saved()
+    after = save_state()
     [at] = [k for k, (a, b) in enumerate(zip(before, after)) if a != b]
     damaged = after[:at] + b"\x02" + after[at + 1 :]
     said = refusal(instance, slave.deSerializeFMUstate, damaged)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from flights import quadrotor
 from hooked import G
-from test_controller_plugin import guided
+from test_controller_plugin import guide
 
 import quadcore as qc
 from quadcore.control import controllers, gains, references
@@ -16,7 +16,7 @@ from quadcore.control import controllers, gains, references
 SHIPPED = sorted((Path(__file__).resolve().parents[2] / "config" / "gains").glob("*/*.yaml"))
 
 
-def written(tmp_path, text):
+def write_gains(tmp_path, text):
     path = tmp_path / "gains.yaml"
     path.write_text(text)
     return path
@@ -26,14 +26,14 @@ def test_what_is_written_is_read_again(tmp_path):
     given = gains.Gains("lqr", "odd", 230.5, 0.0131, {"q_tilt": 1e-7, "lead": 0.0})
     gains.write(given, tmp_path / "a.yaml")
     assert gains.read(tmp_path / "a.yaml") == given
-    told = gains.Gains("pd", history=[{"cost": 0.1, "accepted": True}])
-    gains.write(told, tmp_path / "b.yaml")
+    gains_given = gains.Gains("pd", history=[{"cost": 0.1, "accepted": True}])
+    gains.write(gains_given, tmp_path / "b.yaml")
     assert gains.read(tmp_path / "b.yaml") == gains.Gains("pd")
     assert "accepted: true" in (tmp_path / "b.yaml").read_text()
 
 
 def test_numbers_are_read_as_people_write_them(tmp_path):
-    path = written(
+    path = write_gains(
         tmp_path, "law: geometric\nparameters:\n  kp_xy: 1e1\n  drag: false\n  ki_z: .5\n"
     )
     assert gains.read(path).parameters == {"kp_xy": 10, "drag": 0, "ki_z": 0.5}
@@ -59,40 +59,40 @@ def test_numbers_are_read_as_people_write_them(tmp_path):
     ],
 )
 def test_a_wrong_file_is_one_line_that_tells_where(text, line, says, tmp_path):
-    path = written(tmp_path, text)
+    path = write_gains(tmp_path, text)
     with pytest.raises(qc.InputError, match=f"^{path}:{line}: .*{says}") as error:
         gains.read(path)
     assert "\n" not in str(error.value)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path):
+def test_a_missing_file_is_reported(tmp_path):
     with pytest.raises(qc.InputError, match=r"no\.yaml: the file cannot be read"):
         controllers.read_controller(tmp_path / "no.yaml")
 
 
-def test_a_law_has_the_gains_that_are_shipped_for_the_vehicle():
+def test_a_controller_has_the_gains_that_are_shipped_for_the_vehicle():
     own = controllers.read_controller(SHIPPED[0])
-    vehicle, law = SHIPPED[0].parent.name, SHIPPED[0].stem
-    assert gains.make_for_vehicle(law, vehicle).parameters == own.parameters != {}
+    vehicle, controller = SHIPPED[0].parent.name, SHIPPED[0].stem
+    assert gains.make_for_vehicle(controller, vehicle).parameters == own.parameters != {}
     assert gains.make_for_vehicle("geometric", "of nobody").parameters == {}
     assert gains.make_for_vehicle("geometric", "..").parameters == {}
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name} {path.stem}")
-def test_every_shipped_file_names_its_law_and_vehicle(path):
+def test_every_shipped_file_names_its_controller_and_vehicle(path):
     read = gains.read(path)
     assert (read.vehicle, read.law) == (path.parent.name, path.stem)
     assert qc.read_model(read.vehicle).name == read.vehicle
 
 
 def test_the_plugin_flies_the_gains_of_a_file_and_what_tags_set_wins(tmp_path, hangar):
-    path = written(
+    path = write_gains(
         tmp_path, "law: geometric\nrate: 250\ndelay: 0.004\nparameters:\n  kp_xy: 7\n  kp_z: 12\n"
     )
     tags = {"law": "geometric", "rate": 250, "delay": 0.004, "kp_xy": 7, "kp_z": 9}
     logs = []
     for controller in (tags, {"gains": path, "kp_z": 9}):
-        simulation = hangar(guided(controller), G, engine="eigen", spawn=(1, 0, 10))
+        simulation = hangar(guide(controller), G, engine="eigen", spawn=(1, 0, 10))
         logs.append(simulation.run(0.5))
     assert logs[0].table.tobytes() == logs[1].table.tobytes()
 
@@ -109,17 +109,17 @@ def test_the_plugin_flies_the_gains_of_a_file_and_what_tags_set_wins(tmp_path, h
     ],
 )
 def test_tags_that_contradict_the_file_are_refused(tags, says, tmp_path, hangar):
-    written(tmp_path, "law: geometric\n")
+    write_gains(tmp_path, "law: geometric\n")
     with pytest.raises(qc.InputError, match=says):
-        hangar(guided(tags), G)
+        hangar(guide(tags), G)
 
 
-def test_a_law_of_a_file_flies_at_its_rate(tmp_path):
-    path = written(tmp_path, "law: geometric\nrate: 100\nparameters:\n  kp_xy: 7\n")
-    law = controllers.read_controller(path)
-    assert (law.rate, law.delay) == (100, 0)
+def test_a_controller_of_a_file_runs_at_its_rate(tmp_path):
+    path = write_gains(tmp_path, "law: geometric\nrate: 100\nparameters:\n  kp_xy: 7\n")
+    controller = controllers.read_controller(path)
+    assert (controller.rate, controller.delay) == (100, 0)
     hover = references.hover(x=0.1)
-    one = quadrotor("eigen").run(0.5, controller=law, reference=hover)
+    one = quadrotor("eigen").run(0.5, controller=controller, reference=hover)
     other = quadrotor("eigen").run(
         0.5, controller=controllers.geometric(rate=100, kp_xy=7), reference=hover
     )
@@ -127,13 +127,13 @@ def test_a_law_of_a_file_flies_at_its_rate(tmp_path):
 
 
 def test_gains_of_another_vehicle_are_warned_of(tmp_path):
-    path = written(tmp_path, "law: geometric\nvehicle: hexarotor\n")
+    path = write_gains(tmp_path, "law: geometric\nvehicle: hexarotor\n")
     with pytest.warns(qc.QuadcoreWarning, match="for 'hexarotor', but 'quadrotor' uses them"):
         controllers.parse(str(path), "quadrotor")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         controllers.parse(str(path), "hexarotor")
-        controllers.parse(str(written(tmp_path, "law: geometric\n")), "quadrotor")
+        controllers.parse(str(write_gains(tmp_path, "law: geometric\n")), "quadrotor")
 
 
 def test_a_slowest_speed_that_no_rotor_attains_is_refused():

@@ -38,7 +38,7 @@ CONVERTED = {"shipped": ("quadrotor", DATA / "quadrotor_as_converted_by_gazebo.s
 CONVERTED.update((name_of(case), (case / "model.urdf", case / "model.sdf")) for case in CASES)
 
 
-def distances(simulation, commands, record):
+def measure_distances(simulation, commands, record):
     """Largest distance (m) and angle (degrees) between a flight and the rows of its recording."""
     recorded = np.loadtxt(record, delimiter=",", skiprows=1)
     log = simulation.run(recorded[-1, 0], commands=commands)
@@ -65,7 +65,7 @@ def test_the_shipped_quadrotor_flies_as_recorded(record):
         if drag not in (name, "all"):
             parameters[f"drone_plugin.{name}DragCoeff"] = 0
     simulation = qc.Simulation("quadrotor", parameters=parameters, spawn=(0, 0, 10))
-    apart, angle = distances(simulation, record.parent / f"commands_S{number}.csv", record)
+    apart, angle = measure_distances(simulation, record.parent / f"commands_S{number}.csv", record)
     assert apart < 1e-9
     assert angle < 1e-8
 
@@ -78,12 +78,14 @@ def test_the_urdf_of_the_thesis_flies_as_recorded_once_its_drag_is_written_out()
     drag = {f"drone_plugin.{name}DragCoeff": value for name, value in COMPILED_IN.items()}
     simulation = qc.Simulation(model, parameters=drag, spawn=(0, 0, 10))
     assert simulation.warnings == []
-    apart, angle = distances(simulation, DATA / "commands_S5.csv", DATA / "S5_slow10_all.csv.gz")
+    apart, angle = measure_distances(
+        simulation, DATA / "commands_S5.csv", DATA / "S5_slow10_all.csv.gz"
+    )
     assert apart < 1e-9
     assert angle < 1e-8
 
 
-def test_the_urdf_of_the_thesis_as_printed_flies_another_vehicle_and_is_told_so():
+def test_the_urdf_of_the_thesis_as_printed_is_another_vehicle_and_warns():
     model = DATA.parent / "thesis" / "quadrotor.urdf.xacro"
     with pytest.warns(qc.QuadcoreWarning, match="no drag is set.*A.5"):
         simulation = qc.Simulation(model, spawn=(0, 0, 10))
@@ -101,7 +103,7 @@ def test_other_models_and_worlds_fly_as_recorded(case):
     lines = (case / "params.txt").read_text().splitlines()
     spawn = next(line.split()[1:] for line in lines if line.startswith("spawn "))
     simulation = qc.Simulation(case / "model.urdf", world=case / "case.world", spawn=spawn)
-    apart, angle = distances(simulation, case / "commands.csv", case / "record.csv.gz")
+    apart, angle = measure_distances(simulation, case / "commands.csv", case / "record.csv.gz")
     assert apart < 1e-8
     assert angle < 1e-7
 

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from sensed import AT, mounted
+from sensed import AT, make_mounted
 from vehicles import start
 
 
 def test_a_receiver_tells_where_on_earth_its_antenna_is(hangar):
     tags = {"link": "mast", "latitude": 44.5, "longitude": 179.99999, "altitude": 54}
-    simulation = hangar(mounted("gps", tags), spawn=(0, 0, 0, 0.3, 0.2, 0.1), engine="eigen")
+    simulation = hangar(make_mounted("gps", tags), spawn=(0, 0, 0, 0.3, 0.2, 0.1), engine="eigen")
     start(
         simulation,
         position=(120, -340, 25),
@@ -52,7 +52,7 @@ def test_a_receiver_tells_where_on_earth_its_antenna_is(hangar):
 
 def test_errors_of_a_receiver_have_their_deviations(hangar):
     def errors(seconds, **tags):
-        simulation = hangar(mounted("gps", {"rate": 10, **tags}), engine="eigen", dt=0.1)
+        simulation = hangar(make_mounted("gps", {"rate": 10, **tags}), engine="eigen", dt=0.1)
         fix = simulation.run(seconds, topics=["fix"]).topics["fix"]
         return np.column_stack([fix[f] for f in ("x", "y", "z", "vx", "vy", "vz")])
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from flights import ENGINES
-from test_gazebo_recordings import DATA, FOLDERS, distances, name_of
+from test_gazebo_recordings import DATA, FOLDERS, measure_distances, name_of
 
 import quadcore as qc
 
@@ -17,7 +17,7 @@ RESTING_HEIGHT = 0.0125  # half the frame's height
 CLOSE = 0.03  # m: the frame counts as landed below
 
 
-def spawned(case, engine="gazebo11", **options):
+def make_simulation(case, engine="gazebo11", **options):
     lines = (case / "params.txt").read_text().splitlines()
     spawn = next(line.split()[1:] for line in lines if line.startswith("spawn "))
     return qc.Simulation(
@@ -25,8 +25,8 @@ def spawned(case, engine="gazebo11", **options):
     )
 
 
-def flown(case, duration, engine="gazebo11"):
-    return spawned(case, engine).run(duration, commands=case / "commands.csv")
+def fly_case(case, duration, engine="gazebo11"):
+    return make_simulation(case, engine).run(duration, commands=case / "commands.csv")
 
 
 def tilt(log):
@@ -36,14 +36,16 @@ def tilt(log):
 
 @pytest.mark.parametrize("case", CASES, ids=name_of)
 def test_touching_the_ground_goes_as_recorded(case):
-    apart, angle = distances(spawned(case), case / "commands.csv", case / "record.csv.gz")
+    apart, angle = measure_distances(
+        make_simulation(case), case / "commands.csv", case / "record.csv.gz"
+    )
     assert apart < 1e-9
     assert angle < 1e-7
 
 
 @pytest.mark.parametrize("engine", ["gazebo11", "ode"])
 def test_a_drop_lands_without_a_bounce_and_rests(engine):
-    log = flown(DROP, 2.0, engine)
+    log = fly_case(DROP, 2.0, engine)
     z = log.position[:, 2]
     touchdown = log.time[np.argmax(z < 0.0125 + 1e-5)]
     assert touchdown == pytest.approx(0.135, abs=1.1e-3)
@@ -54,7 +56,7 @@ def test_a_drop_lands_without_a_bounce_and_rests(engine):
 
 
 def test_take_off_apex_and_landing_come_when_they_came_in_gazebo():
-    log = flown(TAKE_OFF, 10.0)
+    log = fly_case(TAKE_OFF, 10.0)
     z, t = log.position[:, 2], log.time
     rising = np.flatnonzero((z[:-1] < 0.0126) & (z[1:] >= 0.0126) & (t[1:] > 1))[0]
     assert t[rising + 1] == pytest.approx(2.204, abs=1.1e-3)
@@ -83,14 +85,14 @@ def test_the_order_of_links_and_joints_in_the_file_does_not_matter(engine, spawn
     model.write_text(text[:start] + "".join(rotors[i] for i in order) + rest)
     speeds = np.array([40, -50, 45, -30])
 
-    def flown_with(path, columns):
+    def fly_numbered(path, columns):
         sim = qc.Simulation(path, engine=engine, world=DROP / "case.world", spawn=spawn)
         assert sim.rotor_names == [f"rotor{1 + i}" for i in columns]
         log = sim.run(1.0, commands=[[0, *speeds]])
         rates = log.rotor_velocity[:, np.argsort(columns)]
         return np.hstack([log.position, log.orientation, log.linear_velocity, rates])
 
-    permuted, original = flown_with(model, order), flown_with(DROP / "model.urdf", [0, 1, 2, 3])
+    permuted, original = fly_numbered(model, order), fly_numbered(DROP / "model.urdf", [0, 1, 2, 3])
     assert np.abs(permuted - original).max() < apart
 
 
@@ -110,7 +112,7 @@ def test_a_tilted_drop_comes_to_rest_and_does_not_slide(engine):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_restoring_on_the_ground_repeats_the_bytes(engine):
-    sim = spawned(DROP, engine)
+    sim = make_simulation(DROP, engine)
     sim.step(140)  # just landed: hinge forces are carried over from step to step
     snapshot = sim.snapshot()
     first = sim.run(0.5).table

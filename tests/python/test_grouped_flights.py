@@ -30,7 +30,7 @@ NOISE = {
 SEEDS = 11  # a block and a part of a second
 
 
-def make_plan(law="geometric", reference="spiral", **options):
+def make_plan(controller="geometric", reference="spiral", **options):
     options.setdefault("engine", "eigen")
     options.setdefault("on_reference", True)
     return FlightPlan.of(
@@ -39,7 +39,7 @@ def make_plan(law="geometric", reference="spiral", **options):
         parameters={**NOISE, **options.pop("parameters", {})},
         duration=options.pop("duration", 1.5),
         log_every=10,
-        controller=controllers.parse(law, "quadrotor"),
+        controller=controllers.parse(controller, "quadrotor"),
         reference=references.parse(reference),
         **options,
     )
@@ -70,10 +70,11 @@ def assert_alike(plans):
 
 @pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
 @pytest.mark.parametrize(
-    "law", ["geometric", "pid:rate=333,delay=0.0035", "lqr:rate=50", "indi", "pd_compensated"]
+    "controller",
+    ["geometric", "pid:rate=333,delay=0.0035", "lqr:rate=50", "indi", "pd_compensated"],
 )
-def test_seeds_fly_as_alone(engine, law):
-    assert_alike(of_seeds(make_plan(law, engine=engine)))
+def test_seeds_fly_as_alone(engine, controller):
+    assert_alike(of_seeds(make_plan(controller, engine=engine)))
 
 
 def test_references_gains_and_parameters_may_differ():

@@ -59,7 +59,7 @@ def here(tmp_path, monkeypatch):
     monkeypatch.delitem(__import__("sys").modules, "own", raising=False)
 
 
-def printed(capsys, *arguments):
+def run_main(capsys, *arguments):
     assert main([*FLY, *arguments]) == 0
     lines = capsys.readouterr().out.splitlines()
     return {line[:22].strip(): line[22:].strip() for line in lines}
@@ -73,7 +73,7 @@ def columns(file):
 
 def test_reference_and_error_are_in_the_log_beside_the_state(capsys, in_empty_folder):
     arguments = ["--controller", "geometric", "--reference", "spiral:radius=1.5", "--duration", "2"]
-    printed(capsys, *arguments, "--log", "log.csv", "--log", "log.mat", "--log-every", "10")
+    run_main(capsys, *arguments, "--log", "log.csv", "--log", "log.mat", "--log-every", "10")
     log = columns("log.csv")
     assert list(log)[-7:] == [
         *(f"reference.{name}" for name in ("x", "y", "z", "yaw")),
@@ -91,7 +91,7 @@ def test_reference_and_error_are_in_the_log_beside_the_state(capsys, in_empty_fo
 
 
 def test_the_summary_tells_largest_rms_and_late_errors(capsys):
-    said = printed(
+    said = run_main(
         capsys, "--controller", "pd", "--reference", "circle", "--duration", "12", "--log", "l.csv"
     )
     log = columns("l.csv")
@@ -104,15 +104,15 @@ def test_the_summary_tells_largest_rms_and_late_errors(capsys):
 
 
 def test_it_flies_what_python_flies(capsys):
-    printed(
+    run_main(
         capsys, "--controller", "geometric:kp_xy=7", "--reference", "circle", "--duration", "1",
         "--controller-rate", "250", "--delay", "0.004", "--log", "log.csv",
     )  # fmt: skip
     circle = references.circle()
     simulation = quadrotor("eigen", xacro_args={"sim_slow": 1})
     simulation.set_state(references.start(simulation, circle))
-    law = controllers.geometric(kp_xy=7, rate=250, delay=0.004)
-    log = simulation.run(1, controller=law, reference=circle)
+    controller = controllers.geometric(kp_xy=7, rate=250, delay=0.004)
+    log = simulation.run(1, controller=controller, reference=circle)
     assert np.array_equal(columns("log.csv")["x"], log.position[:, 0])
     assert np.array_equal(columns("log.csv")["error.z"], log.topics["error"]["z"])
 
@@ -145,7 +145,7 @@ def test_a_log_may_be_thinner_than_the_pieces_of_a_flight():
 
 
 def test_without_reference_it_hovers_where_it_begins(capsys):
-    said = printed(
+    said = run_main(
         capsys, "--controller", "geometric", "--spawn", "1,2,7,0,0,0.5", "--duration", "8"
     )
     assert said["reference"] == "hover at the spawn"
@@ -157,20 +157,20 @@ def test_without_reference_it_hovers_where_it_begins(capsys):
 
 def test_a_spawn_beside_the_reference_is_where_the_flight_begins(capsys):
     arguments = ["--controller", "geometric", "--reference", "circle", "--spawn", "0,0,10"]
-    said = printed(capsys, *arguments, "--duration", "1", "--log", "log.csv")
+    said = run_main(capsys, *arguments, "--duration", "1", "--log", "log.csv")
     assert "begins" not in said["reference"]
     assert columns("log.csv")["x"][0] == 0
 
 
 @pytest.mark.parametrize("own", ["own:Hover", "own:constant"])
 def test_a_controller_of_ones_own_flies(capsys, own):
-    said = printed(capsys, "--controller", own, "--duration", "0.3")
+    said = run_main(capsys, "--controller", own, "--duration", "0.3")
     assert said["controller"].startswith(own)
 
 
 def test_updates_that_reach_the_limit_of_the_motors_are_counted(capsys):
     limited = ["--set", "motorpid_plugin.maxVelocity=400"]
-    said = printed(capsys, "--controller", "own:constant", "--duration", "0.2", *limited)
+    said = run_main(capsys, "--controller", "own:constant", "--duration", "0.2", *limited)
     assert said["saturated updates"] == "100 of 100"
 
 
@@ -224,13 +224,13 @@ def test_a_flight_whose_controller_raises_keeps_its_log(capsys):
 
 
 def test_pictures_show_the_reference(capsys):
-    printed(
+    run_main(
         capsys, "--controller", "pd", "--reference", "circle", "--duration", "0.5", "--out", "out"
     )
     assert Path("out/error.png").read_bytes()[:4] == b"\x89PNG"
 
 
-def test_a_topic_of_the_name_of_what_is_told_is_refused():
+def test_a_topic_with_the_name_of_an_output_is_refused():
     simulation = quadrotor("eigen")
     with pytest.raises(qc.InputError, match="topic"):
         simulation.run(0.1, controller="pd", reference="circle", topics=["reference"])

@@ -201,13 +201,13 @@ def test_a_flight_that_fails_tells_why_and_gives_the_observation_before():
     ],
 )
 @pytest.mark.parametrize("kind", ["Env", "VectorEnv"])
-def test_wrong_rules_are_told(kind, options, says):
+def test_wrong_rules_are_reported(kind, options, says):
     with pytest.raises(qc.InputError, match=says):
         getattr(gym, kind)(**CALM, **options)
 
 
 @pytest.mark.parametrize("make", [gym.Env, lambda **options: gym.VectorEnv(2, **options)])
-def test_wrong_actions_and_options_are_told(make):
+def test_wrong_actions_and_options_are_reported(make):
     env = make(**CALM)
     zero = np.zeros(env.action_space.shape)
     with pytest.raises(qc.InputError, match="Reset the environment"):
@@ -222,7 +222,7 @@ def test_wrong_actions_and_options_are_told(make):
             env.step(wrong)
 
 
-def test_without_gymnasium_it_is_told_what_to_install():
+def test_without_gymnasium_the_package_to_install_is_named():
     hidden = "import sys; sys.modules['gymnasium'] = None; import quadcore.gym"
     says = "quadcore.gym requires the package gymnasium, 1.1 or newer. Install it: pip install"
     assert says in script(hidden).stderr.splitlines()[-1]

@@ -6,7 +6,7 @@ import argparse
 import shlex
 
 import pytest
-from processes import refused
+from processes import run_refused
 
 from quadcore.cli import main, make_parser
 from quadcore.simulation.engines import ENGINE, STUDY_ENGINE
@@ -16,7 +16,7 @@ NOTHING = (None, False, [], argparse.SUPPRESS)
 """Defaults without which nothing is done."""
 
 
-def told(capsys, command):
+def read_help(capsys, command):
     with pytest.raises(SystemExit):
         main([command, "--help"])
     return " ".join(capsys.readouterr().out.split())
@@ -34,14 +34,14 @@ def test_help_tells_the_default_of_every_option(command):
 
 def test_help_tells_what_studies_fly_where_from_and_where_to(capsys):
     for command in ("evaluate", "sweep", "tune", "fit"):
-        assert f"(default: {STUDY_ENGINE}) --" in told(capsys, command)
-    assert f"(default: {ENGINE}) --dt" in told(capsys, "run")
+        assert f"(default: {STUDY_ENGINE}) --" in read_help(capsys, command)
+    assert f"(default: {ENGINE}) --dt" in read_help(capsys, "run")
     for command in ("evaluate", "tune"):
-        assert "pose of the frame link in m and rad (default: on the reference)" in told(
+        assert "pose of the frame link in m and rad (default: on the reference)" in read_help(
             capsys, command
         )
-    assert "(default: on the reference, or 0,0,10 with --commands)" in told(capsys, "sweep")
-    assert "summary and plots (default: out/sweep)" in told(capsys, "sweep")
+    assert "(default: on the reference, or 0,0,10 with --commands)" in read_help(capsys, "sweep")
+    assert "summary and plots (default: out/sweep)" in read_help(capsys, "sweep")
 
 
 @pytest.mark.parametrize("command", PARSERS)
@@ -67,16 +67,16 @@ def test_help_of_the_program_says_what_it_is_and_which_engine_is_the_default(cap
 
 
 def test_only_close_options_are_suggested(in_empty_folder):
-    assert "--realtime. See" in refused("run", "quadrotor", "--realtime")
-    assert "Did you mean '--json'?" in refused("run", "quadrotor", "--jsn")
+    assert "--realtime. See" in run_refused("run", "quadrotor", "--realtime")
+    assert "Did you mean '--json'?" in run_refused("run", "quadrotor", "--jsn")
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, expected",
     [
         (["tune", "pd", "-o", "gains.yaml"], "tuning writes no log. Leave --log-every out"),
         (["export-fmu", "quadrotor", "-o", "x.fmu"], "an FMU writes no log. Leave --log-every out"),
     ],
 )
-def test_what_writes_no_log_thins_none(words, told, in_empty_folder):
-    assert told in refused(*words, "--log-every", "5")
+def test_what_writes_no_log_thins_none(words, expected, in_empty_folder):
+    assert expected in run_refused(*words, "--log-every", "5")

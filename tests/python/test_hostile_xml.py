@@ -33,7 +33,7 @@ def soon():
     assert time.process_time() - begin < SOON
 
 
-def refused(call, *arguments, **options) -> str:
+def read_refusal(call, *arguments, **options) -> str:
     """Message of the InputError, which must come soon."""
     with soon():
         message = refusal(call, *arguments, **options)
@@ -43,31 +43,31 @@ def refused(call, *arguments, **options) -> str:
 
 def read_urdf(data):
     Path("hostile.xml").write_bytes(data)
-    return refused(qc.Simulation, "hostile.xml")
+    return read_refusal(qc.Simulation, "hostile.xml")
 
 
 def read_xacro(data):
     Path("hostile.xml.xacro").write_bytes(data)
-    return refused(qc.Simulation, "hostile.xml.xacro").replace(".xml.xacro", ".xml")
+    return read_refusal(qc.Simulation, "hostile.xml.xacro").replace(".xml.xacro", ".xml")
 
 
 def read_included(data):
     Path("hostile.xml").write_bytes(data)
     Path("outer.xacro").write_text(XACRO.format('\n<xacro:include filename="hostile.xml"/>'))
-    message = refused(qc.Simulation, "outer.xacro")
+    message = read_refusal(qc.Simulation, "outer.xacro")
     return message.replace(str(Path("hostile.xml").resolve()), "hostile.xml")
 
 
 def read_world(data):
     Path("hostile.xml").write_bytes(data)
-    return refused(qc.Simulation, "toy.urdf", world="hostile.xml")
+    return read_refusal(qc.Simulation, "toy.urdf", world="hostile.xml")
 
 
 def read_by_the_core(data):
     # Undecodable bytes cannot come this way.
     document = _core.Document("hostile.xml", data.decode())
     read = _core.read_world if b"<sdf" in data else _core.read_model
-    return refused(read, document)
+    return read_refusal(read, document)
 
 
 ROUTES = {
@@ -142,7 +142,7 @@ def test_a_number_of_half_a_megabyte(toy):
             broken = MODEL.replace(good, bad.format(digits))
             for name in ("toy.urdf", "toy.xacro"):
                 Path(name).write_text(broken)
-                assert refused(qc.Simulation, name).startswith(f"{name}:")
+                assert read_refusal(qc.Simulation, name).startswith(f"{name}:")
 
 
 def test_names_of_half_a_megabyte(toy):
@@ -151,7 +151,7 @@ def test_names_of_half_a_megabyte(toy):
         '<link name="mount"/>', f'<link name="mount"/>\n<link name="{"y" * 300_000}"/>'
     )
     Path("toy.urdf").write_text(text)
-    assert "does not exist" in refused(qc.Simulation, "toy.urdf")
+    assert "does not exist" in read_refusal(qc.Simulation, "toy.urdf")
 
 
 def test_an_element_of_a_hundred_thousand_attributes(read):
@@ -173,7 +173,7 @@ def test_a_chain_of_thousands_of_links_is_read_or_refused_in_time(toy, size):
         assert len(_core.read_model(document).links) == 2
     chain[0 if size > 0 else -1] = link(0, f"l{abs(size) - 1}")
     Path("toy.urdf").write_text(MODEL.replace("</robot>", "".join(chain) + "</robot>"))
-    assert "closes a loop of links" in refused(qc.Simulation, "toy.urdf")
+    assert "closes a loop of links" in read_refusal(qc.Simulation, "toy.urdf")
 
 
 @pytest.mark.parametrize("character", ["\0", "\x01", "\x1b[2J", "\x0c"])
@@ -207,7 +207,7 @@ def test_another_encoding_is_refused_whatever_it_declares():
 def test_an_escaped_line_break_in_a_name_does_not_break_the_message(toy):
     text = MODEL.replace('name="weld" type="fixed"', 'name="we&#10;ld" type="welded&#13;&#10;"')
     Path("toy.urdf").write_text(text)
-    assert "joint 'we ld' is of type 'welded'" in refused(qc.Simulation, "toy.urdf")
+    assert "joint 'we ld' is of type 'welded'" in read_refusal(qc.Simulation, "toy.urdf")
 
 
 MULTIPLY = "".join(
@@ -233,6 +233,6 @@ DOUBLE = "".join(
 )
 def test_a_xacro_that_expands_without_bound(text, says):
     Path("hostile.xacro").write_text(XACRO.format(text))
-    message = refused(qc.Simulation, "hostile.xacro")
+    message = read_refusal(qc.Simulation, "hostile.xacro")
     assert message.startswith("hostile.xacro:")
     assert says in message

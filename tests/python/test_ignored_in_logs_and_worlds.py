@@ -97,7 +97,7 @@ def test_the_usual_readers_read_such_a_log(log, tmp_path):
     assert [float(row["z"]) for row in rows] == log.position[:, 2].tolist()
 
 
-def test_pandas_reads_such_a_log_when_told_of_comments(log, tmp_path):
+def test_pandas_reads_such_a_log_with_its_comments(log, tmp_path):
     pandas = pytest.importorskip("pandas")
     log.to_csv(tmp_path / "log.csv")
     table = pandas.read_csv(tmp_path / "log.csv", comment="#")

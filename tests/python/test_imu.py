@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from flights import ENGINES
 from scipy.spatial.transform import Rotation
-from sensed import AT, RPY, mounted, rows_of
+from sensed import AT, RPY, make_mounted, rows_of
 from vehicles import start
 
 
 def spinning(hangar, tags, engine="eigen", gravity=(0.3, -0.2, -9.7)):
     """A body that falls and turns about one of its axes, a unit mounted askew on it."""
     simulation = hangar(
-        mounted("imu", {"link": "mast", **tags}),
+        make_mounted("imu", {"link": "mast", **tags}),
         gravity,
         spawn=(1, 2, 3, 0.3, 0.2, 0.1),
         engine=engine,
@@ -76,7 +76,9 @@ def test_in_the_engines_of_ode_a_unit_measures_the_rate_at_the_end_of_a_step(eng
 
 def still_unit(hangar, tags, seconds, seed=0, dt=0.01):
     """Errors of a unit that floats at rest: (n, 6)."""
-    simulation = hangar(mounted("imu", {"rate": 1 / dt, **tags}), engine="eigen", dt=dt, seed=seed)
+    simulation = hangar(
+        make_mounted("imu", {"rate": 1 / dt, **tags}), engine="eigen", dt=dt, seed=seed
+    )
     imu = simulation.run(seconds, topics=["imu"]).topics["imu"]
     return np.column_stack([imu[f] for f in ("wx", "wy", "wz", "ax", "ay", "az")])[1:]
 

@@ -22,7 +22,7 @@ def attitude(axis, angle):
     return np.append(axis * np.sin(angle / 2), np.cos(angle / 2))
 
 
-def flown(engine, asked, seconds=3, **options):
+def fly_constant(engine, asked, seconds=3, **options):
     """A flight of what always asks for the same."""
     simulation = quadrotor(engine, parameters=SLOW, **options)
     return simulation.run(seconds, controller=lambda t, state, reference: asked)
@@ -31,7 +31,7 @@ def flown(engine, asked, seconds=3, **options):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_an_attitude_is_reached_and_held(engine):
     wanted = attitude([0.4, -0.2, 0.8], 0.5)
-    log = flown(engine, qc.AttitudeThrust(wanted, WEIGHT), 5, spawn=(0, 0, 80, 0.3, 0, -0.6))
+    log = fly_constant(engine, qc.AttitudeThrust(wanted, WEIGHT), 5, spawn=(0, 0, 80, 0.3, 0, -0.6))
     reached = np.abs(log.orientation[log.time > 4] @ wanted)  # yaw is slow by its gains
     assert 2 * np.arccos(np.minimum(reached, 1)).max() < 5e-3
     assert np.abs(log.angular_velocity[-1]).max() < 0.02
@@ -40,7 +40,7 @@ def test_an_attitude_is_reached_and_held(engine):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_from_upside_down_an_attitude_is_reached(engine):
     level = qc.AttitudeThrust([0, 0, 0, 1], WEIGHT)
-    log = flown(engine, level, spawn=(0, 0, 50, np.pi, 0, 0))
+    log = fly_constant(engine, level, spawn=(0, 0, 50, np.pi, 0, 0))
     assert abs(log.orientation[-1, 3]) > 1 - 1e-4
 
 
@@ -48,7 +48,7 @@ def test_from_upside_down_an_attitude_is_reached(engine):
 @pytest.mark.parametrize("wanted", [(0, 0, 0.8), (0.7, -0.4, 0.3)])
 def test_rates_are_reached_and_held(engine, wanted):
     # Until it lies over. Gazebo's damping takes its share of what rates alone are held by.
-    log = flown(engine, qc.RatesThrust(wanted, WEIGHT), 1.8, spawn=(0, 0, 80))
+    log = fly_constant(engine, qc.RatesThrust(wanted, WEIGHT), 1.8, spawn=(0, 0, 80))
     assert np.abs(log.angular_velocity[log.time > 1.5] - wanted).max() < 0.03
 
 
@@ -74,7 +74,7 @@ def test_an_outer_loop_of_ten_lines_hovers(engine, slow):
     assert np.linalg.norm(log.position[-1] - Outer.goal) < 1e-3
 
 
-def test_it_commands_what_the_geometric_law_does_inside():
+def test_it_commands_what_the_geometric_controller_does_inside():
     hover = references.hover(x=0.4, y=-0.3, height=20.2, yaw=0.5)
     plain = {"integral": False, "flat_rates": False, "drag": False}
     inside = controllers.geometric(**plain)
@@ -100,9 +100,9 @@ def test_it_commands_what_the_geometric_law_does_inside():
 
     logs = [
         quadrotor("eigen", parameters=SLOW, spawn=(0, 0, 20)).run(
-            2, controller=law, reference=hover
+            2, controller=controller, reference=hover
         )
-        for law in (inside, Same())
+        for controller in (inside, Same())
     ]
     assert np.abs(logs[0].table - logs[1].table).max() < 1e-6
 
@@ -115,21 +115,25 @@ def quaternion(matrix):
 
 
 def test_speeds_and_attitudes_may_alternate():
-    def law(t, state, reference):
+    def controller(t, state, reference):
         if t < 0.5:
             return np.array([480, -480, 480, -480])
         return qc.RatesThrust([0, 0, 0], WEIGHT)
 
-    log = quadrotor("eigen", parameters=SLOW).run(1, controller=law)
+    log = quadrotor("eigen", parameters=SLOW).run(1, controller=controller)
     assert np.abs(log.angular_velocity[-1]).max() < 1e-3
 
 
 def test_a_controller_is_copied_with_its_inner_loop():
-    law = Outer()
-    law.inner_loop = qc.InnerLoop(kr_rp=200)
+    controller = Outer()
+    controller.inner_loop = qc.InnerLoop(kr_rp=200)
     tables = []
-    for copied in (lambda law: law, copy.deepcopy, lambda law: pickle.loads(pickle.dumps(law))):
-        flown_by = copied(law)  # after the first flight
+    for copied in (
+        lambda controller: controller,
+        copy.deepcopy,
+        lambda controller: pickle.loads(pickle.dumps(controller)),
+    ):
+        flown_by = copied(controller)  # after the first flight
         simulation = quadrotor("eigen", parameters=SLOW, spawn=(0, 0, 20))
         tables.append(simulation.run(0.5, controller=flown_by).table)
     np.testing.assert_array_equal(tables[0], tables[1])
@@ -157,7 +161,7 @@ def test_what_is_no_attitude_or_rate_is_refused(asked, says):
 
 
 def test_parameters_of_the_inner_loop_are_checked_and_documented():
-    def law(t, state, reference):
+    def controller(t, state, reference):
         return qc.RatesThrust([0, 0, 0], WEIGHT)
 
     for loop, says in (
@@ -165,9 +169,9 @@ def test_parameters_of_the_inner_loop_are_checked_and_documented():
         (qc.InnerLoop(spins=[1, 1]), "the spins are not 4 signs"),
         ("stiff", "its inner_loop is 'stiff'. Give a quadcore.InnerLoop"),
     ):
-        law.inner_loop = loop
+        controller.inner_loop = loop
         with pytest.raises(qc.InputError, match=says):
-            quadrotor("eigen").run(1, controller=law)
+            quadrotor("eigen").run(1, controller=controller)
     assert "kr_rp : float, default 300" in qc.InnerLoop.__doc__
 
 
@@ -196,4 +200,4 @@ def test_a_torque_and_a_thrust_are_those_of_the_commanded_speeds(model):
 
 def test_a_torque_of_two_numbers_is_refused():
     with pytest.raises(qc.InputError, match=r"its torque is .* Give 3 finite numbers"):
-        flown("eigen", qc.WrenchThrust([1, 2], WEIGHT), 0.1)
+        fly_constant("eigen", qc.WrenchThrust([1, 2], WEIGHT), 0.1)

@@ -43,7 +43,7 @@ def files(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
-def hidden(folder):
+def list_hidden(folder):
     return [name for name in files(folder) if Path(name).name.startswith(".")]
 
 
@@ -68,7 +68,7 @@ def alive(pid):
         return False
 
 
-def ended(process, number):
+def stop_command(process, number):
     """What a command prints that is asked to end."""
     process.send_signal(number)
     _, error = process.communicate(timeout=LONG)
@@ -77,7 +77,7 @@ def ended(process, number):
     return error
 
 
-def started(*arguments, folder):
+def start_command(*arguments, folder):
     return subprocess.Popen(
         [*QUADCORE, *arguments],
         cwd=folder,
@@ -93,14 +93,14 @@ def test_a_run_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
     for trial in range(TRIALS):
         folder = tmp_path / str(trial)
         folder.mkdir()
-        process = started(
+        process = start_command(
             *("run", *FALL, "--duration", "100000"),
             *("--log", "log.csv", "--out", "out", "--no-plots"),
             folder=folder,
         )
         until(lambda log=folder / "log.csv": log.exists() and log.stat().st_size > 0)
         time.sleep(moments.uniform(0, 0.3))
-        ended(process, number)
+        stop_command(process, number)
         assert files(folder) == ["log.csv", "out/log.csv", "out/model.urdf", "out/run.json"]
         table = np.loadtxt(folder / "log.csv", delimiter=",", skiprows=1)
         assert table[:, 0] == pytest.approx(1e-3 * np.arange(len(table)))
@@ -113,15 +113,15 @@ def test_a_comparison_ended_at_random_moments_keeps_what_was_flown(number, tmp_p
     for trial in range(TRIALS):
         folder = tmp_path / str(trial)
         folder.mkdir()
-        process = started(
+        process = start_command(
             *("compare", *FALL, "--duration", "0.5", "--logs"),
             *("--vary", "motorpid_plugin.kp=1e-4:5e-4:20000", "--jobs", "2", "--out", "out"),
             folder=folder,
         )
         until(lambda logs=folder / "out" / "logs": len(list(logs.glob("[0-9]*"))) > 2)
         time.sleep(moments.uniform(0, 0.3))
-        ended(process, number)
-        assert hidden(folder) == []
+        stop_command(process, number)
+        assert list_hidden(folder) == []
         with (folder / "out" / "table.csv").open(newline="") as stream:
             rows = list(csv.DictReader(stream))
         flown = [row["number"] for row in rows if row["failure"] == ""]
@@ -139,15 +139,15 @@ def test_a_validation_ended_at_random_moments_keeps_what_was_flown(number, tmp_p
     for trial in range(TRIALS):
         out = tmp_path / str(trial)
         drawing = trial % 2 == 1
-        process = started(
+        process = start_command(
             *("validate", "--drag", "none,profile,all", "--sim-slow", "1,2", "--jobs", "2"),
             *("--engine", "eigen", "--duration", "0.5" if drawing else "200", "--out", str(out)),
             folder=tmp_path,
         )
         until(lambda seen=out / "errors.csv" if drawing else out: seen.exists())
         time.sleep(moments.uniform(0, 0.3))
-        ended(process, number)
-        assert hidden(out) == []
+        stop_command(process, number)
+        assert list_hidden(out) == []
         if not drawing and files(out) == []:
             continue  # before the first flight
         tables = ["chains.csv", "commands.csv", "errors.csv", "report.html", "validation.json"]
@@ -175,7 +175,7 @@ def test_a_validation_ended_at_random_moments_keeps_what_was_flown(number, tmp_p
 
 
 def test_processes_end_with_a_parent_that_is_killed(tmp_path):
-    process = started(
+    process = start_command(
         *("compare", *FALL, "--duration", "1e5", "--jobs", "2", "--log-every", "1000"),
         *("--vary", "motorpid_plugin.kp=1e-4:5e-4:3"),
         folder=tmp_path,
@@ -200,7 +200,7 @@ def test_nohup_keeps_a_flight_in_the_air(tmp_path):
     process.send_signal(signal.SIGHUP)
     size = log.stat().st_size
     until(lambda: log.stat().st_size > size)
-    ended(process, signal.SIGTERM)
+    stop_command(process, signal.SIGTERM)
 
 
 def test_a_process_ended_by_a_signal_without_a_name_is_a_case_that_failed():
@@ -217,7 +217,7 @@ def test_a_process_ended_by_a_signal_without_a_name_is_a_case_that_failed():
 def test_an_interrupt_while_an_outcome_is_taken_loses_none_of_the_others(tmp_path):
     taken = []
 
-    def written(number):
+    def write_file(number):
         (tmp_path / str(number)).touch()
         return number
 
@@ -228,7 +228,7 @@ def test_an_interrupt_while_an_outcome_is_taken_loses_none_of_the_others(tmp_pat
         taken.append((index, outcome))
 
     with pytest.raises(interrupts.Interrupted), interrupts.raise_on_signals():
-        run_cases(lambda number: number, range(1000), take, 2, written)
+        run_cases(lambda number: number, range(1000), take, 2, write_file)
     assert sorted(str(number) for number, _ in taken) == files(tmp_path)
     assert all(outcome == index for index, outcome in taken) and 1 < len(taken) < 1000
 

@@ -4,7 +4,7 @@ import csv
 
 import numpy as np
 import pytest
-from processes import ran, refused
+from processes import run_command, run_refused
 
 import quadcore as qc
 from quadcore.formats.bag_messages import ARRAY, Messages
@@ -40,7 +40,9 @@ def largest(out):
 
 @pytest.mark.parametrize("suffix", ["csv", "mat", "bag"])
 def test_a_recording_is_nearest_to_the_engine_that_flew_it(suffix, recording, tmp_path):
-    done = ran("validate", "--plant", str(recording / f"flight.{suffix}"), "--out", str(tmp_path))
+    done = run_command(
+        "validate", "--plant", str(recording / f"flight.{suffix}"), "--out", str(tmp_path)
+    )
     assert done.returncode == 0, done.stderr
     assert "maximum difference from" in done.stdout and "chapter 2" in done.stdout
     apart = largest(tmp_path)
@@ -51,8 +53,10 @@ def test_a_recording_is_nearest_to_the_engine_that_flew_it(suffix, recording, tm
 
 
 def test_a_wrong_model_is_far_from_the_recording(recording, tmp_path):
-    done = ran("validate", "--plant", str(recording / "flight.csv"), "--engine", "eigen", "--out",
-               str(tmp_path), "--set", "drone_plugin.rotorThrustCoeff=5e-6")  # fmt: skip
+    done = run_command(
+        "validate", "--plant", str(recording / "flight.csv"), "--engine", "eigen",
+        "--out", str(tmp_path), "--set", "drone_plugin.rotorThrustCoeff=5e-6",
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr
     apart = largest(tmp_path)
     assert apart["eigen", "z"] > 0.1 and apart["chapter 2", "z"] > 0.1
@@ -70,17 +74,17 @@ def test_a_bag_of_the_thesis_lacks_the_rotors_and_says_so(tmp_path):
         bag.write(odometry, 1, messages._odometry(stamp, state, [0.0] * 4))
         speeds = np.array([480.0, -480, 480, -480])
         bag.write(commands, 1, messages.make_array(speeds, messages.make_layout(["w"], 4)))
-    found = refused("validate", "--plant", str(tmp_path / "thesis.bag"))
+    found = run_refused("validate", "--plant", str(tmp_path / "thesis.bag"))
     assert "topics that end in ground_truth/odometry: none" in found
     assert "or give a .csv or .mat file with the columns of a log." in found
 
 
 def test_what_cannot_be_judged_is_one_line(recording):
     bare = str(recording / "bare.csv")
-    assert "has no topic vel_cmd. Give the --commands" in refused("validate", "--plant", bare)
+    assert "has no topic vel_cmd. Give the --commands" in run_refused("validate", "--plant", bare)
     late = ("--commands", str(recording / "late.csv"))
-    assert "begins at t = 3, the commands at 3.1" in refused("validate", "--plant", bare, *late)
-    found = refused("validate", "hexarotor", "--plant", str(recording / "flight.csv"))
+    assert "begins at t = 3, the commands at 3.1" in run_refused("validate", "--plant", bare, *late)
+    found = run_refused("validate", "hexarotor", "--plant", str(recording / "flight.csv"))
     assert "has 4 rotors, the model 6" in found
-    found = refused("validate", "--plant", bare, "--sim-slow", "8")
+    found = run_refused("validate", "--plant", bare, "--sim-slow", "8")
     assert "--plant is one flight. Give its --sim-slow with --set" in found

@@ -37,7 +37,7 @@ def expanded(tmp_path, monkeypatch):
     Path("table.yaml").write_text("mass: 1.5\n")
     process_file = xacro.process_file
 
-    def counted(*arguments, **options):
+    def count_expansion(*arguments, **options):
         text.count += 1
         return process_file(*arguments, **options)
 
@@ -45,7 +45,7 @@ def expanded(tmp_path, monkeypatch):
         return "".join(line for line, _ in expand("kept.xacro", arguments))
 
     text.count = 0
-    monkeypatch.setattr(xacro, "process_file", counted)
+    monkeypatch.setattr(xacro, "process_file", count_expansion)
     return text
 
 

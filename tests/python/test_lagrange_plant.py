@@ -47,14 +47,14 @@ def apart(one, other):
     return np.abs(one.position - other.position).max()
 
 
-def test_with_equal_terms_the_law_of_the_thesis_flies_it_as_it_flies_eigen():
+def test_with_equal_terms_the_controller_of_the_thesis_flies_it_as_it_flies_eigen():
     spiral = references.spiral()
-    law = controllers.pd_compensated(rate=250)
+    controller = controllers.pd_compensated(rate=250)
     plants = [
         Plant(GYROSTAT, dt=4e-3, **CHAPTER_2),
         qc.Simulation(engine="eigen", dt=4e-3, **CHAPTER_2),
     ]
-    logs = [on(spiral, plant).run(10, controller=law, reference=spiral) for plant in plants]
+    logs = [on(spiral, plant).run(10, controller=controller, reference=spiral) for plant in plants]
     assert np.linalg.norm(logs[1].position[-1] - logs[1].position[0]) > 9
     assert apart(*logs) < 1e-8
     assert np.abs(logs[0].rotor_velocity - logs[1].rotor_velocity).max() < 1e-6
@@ -67,8 +67,8 @@ def test_so_it_does_any_vehicle_with_rate_delay_and_noise(hangar):
     simulation = hangar(urdf, GRAVITY, WIND, engine="eigen", dt=1e-3, spawn=(0, 0, 10))
     plant = Plant(GYROSTAT, model=simulation.model, world=simulation.world, dt=1e-3)
     hover = references.hover(x=0.1)
-    law = controllers.indi(rate=330, delay=0.003)
-    logs = [s.run(0.3, controller=law, reference=hover) for s in (plant, simulation)]
+    controller = controllers.indi(rate=330, delay=0.003)
+    logs = [s.run(0.3, controller=controller, reference=hover) for s in (plant, simulation)]
     assert apart(*logs) < 1e-8
     assert plant.topic("odom") == pytest.approx(simulation.topic("odom"), abs=1e-8)
 
@@ -152,9 +152,9 @@ def test_wrenches_that_it_has_not_are_refused_in_python_too():
 def test_a_force_that_it_does_not_know_is_refused():
     simulation = qc.Simulation(engine="eigen", **CHAPTER_2)
     jet = SimpleNamespace(name="jet", wrenches=["push", "pull"])
-    told = SimpleNamespace(world=simulation.world, plugins=[*simulation.plugins, jet])
+    modified = SimpleNamespace(world=simulation.world, plugins=[*simulation.plugins, jet])
     with pytest.raises(qc.InputError, match="plugin 'jet' exerts push, pull, which the mathema"):
-        check(told)
+        check(modified)
 
 
 def test_the_command_line_flies_it(capsys, in_empty_folder):

@@ -56,7 +56,7 @@ def find(name, folder):
     return next((place for place in places if place.is_file()), None)
 
 
-def included(file, seen):
+def find_included(file, seen):
     """Yield the owned headers that a file includes, through those that nobody owns."""
     for name in INCLUDE.findall(file.read_text(encoding="utf-8")):
         header = find(name, file.parent)
@@ -66,7 +66,7 @@ def included(file, seen):
         if library_of(header):
             yield header
         else:
-            yield from included(header, seen)
+            yield from find_included(header, seen)
 
 
 def upward(file):
@@ -74,7 +74,7 @@ def upward(file):
     return [
         f"{file.relative_to(CPP)} of {library_of(file)} includes {header.relative_to(CPP)}"
         f" of {library_of(header)}"
-        for header in included(file, set())
+        for header in find_included(file, set())
         if library_of(header) not in allowed
     ]
 

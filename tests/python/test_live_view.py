@@ -14,7 +14,7 @@ import urllib.request
 
 import numpy as np
 import pytest
-from browser import told_when_ready
+from browser import run_script_when_ready
 from test_player import content_of, flown
 
 import quadcore as qc
@@ -100,9 +100,9 @@ def test_the_page_of_a_flight_shows_its_rows(tmp_path):
     const [player] = quadcore.players;
     while (player.isLive) await new Promise((resolve) => setTimeout(resolve, 20));
     await new Promise((resolve) => setTimeout(resolve, 200));
-    told.rows = player.flights[0].rows; told.end = player.end; told.time = player.time;
-    told.state = document.querySelector(".state").textContent;
-    told.plots = player.plots.content.map((panel) => panel.name);
+    result.rows = player.flights[0].rows; result.end = player.end; result.time = player.time;
+    result.state = document.querySelector(".state").textContent;
+    result.plots = player.plots.content.map((panel) => panel.name);
     """
     # The page from disk may not ask a server: the events go in as the server would send them.
     rows, _ = read_events(live.page)
@@ -116,7 +116,7 @@ def test_the_page_of_a_flight_shows_its_rows(tmp_path):
       }}
       close() {{}}
     }};</script>"""
-    found = told_when_ready(page.replace("<head>", "<head>" + source, 1), script, tmp_path)
+    found = run_script_when_ready(page.replace("<head>", "<head>" + source, 1), script, tmp_path)
     assert len(rows) == 1 + 1000 // 17 and found["rows"] == len(rows)
     assert found["end"] == found["time"] == pytest.approx(rows[-1][1])
     assert found["state"] == "the flight has ended"

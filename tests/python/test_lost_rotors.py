@@ -26,16 +26,18 @@ def here(tmp_path, monkeypatch):
 
 
 def scenario(rotor, detection=0.0, event="weaken: {}, to: 0"):
-    told = "" if detection is None else f"detection: {detection}"
-    text = f"plugins: {{fault: {{{told}}}}}\nevents: [{{at: {LOST_AT}, {event.format(rotor)}}}]\n"
+    setting = "" if detection is None else f"detection: {detection}"
+    text = (
+        f"plugins: {{fault: {{{setting}}}}}\nevents: [{{at: {LOST_AT}, {event.format(rotor)}}}]\n"
+    )
     Path("lost.yaml").write_text(text)
     return "lost.yaml"
 
 
-def flown(rotor, spins, engine="eigen", detection=0.0, event="weaken: {}, to: 0", **options):
+def fly_and_lose(rotor, spins, engine="eigen", detection=0.0, event="weaken: {}, to: 0", **options):
     """Log, distance and yaw over time of a flight in which a rotor is lost."""
-    law = qc.controllers.parse(options.pop("law", "geometric"), "hexarotor")
-    law.spins = list(spins)
+    controller = qc.controllers.parse(options.pop("controller", "geometric"), "hexarotor")
+    controller.spins = list(spins)
     usual = {
         "reference": qc.references.parse("hover"),
         "duration": 12.0,
@@ -45,7 +47,7 @@ def flown(rotor, spins, engine="eigen", detection=0.0, event="weaken: {}, to: 0"
         "hexarotor",
         scenario=scenario(rotor, detection, event),
         engine=engine,
-        controller=law,
+        controller=controller,
         on_reference=True,
         log_every=10,
         **{**usual, **options},
@@ -58,8 +60,8 @@ def flown(rotor, spins, engine="eigen", detection=0.0, event="weaken: {}, to: 0"
 
 @pytest.mark.parametrize("rotor", range(1, 7))
 @pytest.mark.parametrize("spins", [ALTERNATING, PAIRED], ids=["PNPNPN", "PPNNPN"])
-def test_a_hexarotor_that_is_told_of_a_lost_rotor_holds_its_place(spins, rotor):
-    _, distance, yaw = flown(rotor, spins)
+def test_a_hexarotor_with_a_detected_lost_rotor_holds_its_position(spins, rotor):
+    _, distance, yaw = fly_and_lose(rotor, spins)
     assert distance.max() < 0.5
     assert distance[-1] < 0.05
     if spins == PAIRED and rotor <= 4:
@@ -70,16 +72,16 @@ def test_a_hexarotor_that_is_told_of_a_lost_rotor_holds_its_place(spins, rotor):
 
 @pytest.mark.parametrize(("spins", "rotor"), [(ALTERNATING, 2), (PAIRED, 3)])
 def test_it_does_so_in_gazebos_engine_too(spins, rotor):
-    _, distance, yaw = flown(rotor, spins, "gazebo11")
+    _, distance, yaw = fly_and_lose(rotor, spins, "gazebo11")
     assert distance.max() < 0.5
     assert spins == ALTERNATING or np.abs(yaw).max() < 0.2
 
 
-def test_what_a_rotor_does_that_is_told_late_is_worse_and_untold_worse_still():
+def test_a_late_detection_is_worse_and_no_detection_worse_still():
     """The flights are the same until somebody knows."""
     logs, away = {}, {}
     for detection in (0.0, 0.2, None):
-        logs[detection], distance, _ = flown(2, PAIRED, detection=detection, duration=6.0)
+        logs[detection], distance, _ = fly_and_lose(2, PAIRED, detection=detection, duration=6.0)
         away[detection] = distance.max()
     assert away[0.0] < 0.01 < away[0.2] < 0.3 < away[None]
     table, time = {key: log.table for key, log in logs.items()}, logs[0.0].time
@@ -89,7 +91,7 @@ def test_what_a_rotor_does_that_is_told_late_is_worse_and_untold_worse_still():
 
 
 def test_a_rotor_that_is_cut_and_slows_down_in_the_air_is_lost_as_well():
-    log, distance, yaw = flown(
+    log, distance, yaw = fly_and_lose(
         3,
         PAIRED,
         event="cut: {}",
@@ -103,30 +105,34 @@ def test_a_rotor_that_is_cut_and_slows_down_in_the_air_is_lost_as_well():
     assert abs(log.rotor_velocity[-1, 2]) < 30
 
 
-@pytest.mark.parametrize("law", ["geometric", "indi", "lqr"])
+@pytest.mark.parametrize("controller", ["geometric", "indi", "lqr"])
 @pytest.mark.parametrize("reference", ["circle", "eight"])
-def test_it_goes_on_along_a_path(law, reference):
-    _, distance, _ = flown(
-        1, ALTERNATING, law=law, detection=0.05, reference=qc.references.parse(reference)
+def test_it_goes_on_along_a_path(controller, reference):
+    _, distance, _ = fly_and_lose(
+        1,
+        ALTERNATING,
+        controller=controller,
+        detection=0.05,
+        reference=qc.references.parse(reference),
     )
     assert distance.max() < 0.5
 
 
-def with_law(*plugins):
+def write_guided_urdf(*plugins):
     text = qc.read_model("hexarotor", {"sim_slow": "1"}).document.text
-    Path("with_law.urdf").write_text(with_plugins(text, *plugins))
-    return "with_law.urdf"
+    Path("guided.urdf").write_text(with_plugins(text, *plugins))
+    return "guided.urdf"
 
 
 @pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
-def test_the_plugin_is_told_as_the_law_from_python_is(engine):
+def test_the_plugin_and_the_controller_from_python_detect_faults_alike(engine):
     fault = plugin("fault", {"losses": "0.3 2 0  0.7 4 0.8", "detection": 0.1})
     spins = " ".join(map(str, PAIRED))
-    law = plugin("controller", {"law": "geometric", "spins": spins})
+    controller = plugin("controller", {"law": "geometric", "spins": spins})
     plugged = qc.Simulation(
-        with_law(fault, law, plugin("reference", {"shape": "hover"})), engine=engine
+        write_guided_urdf(fault, controller, plugin("reference", {"shape": "hover"})), engine=engine
     )
-    called = qc.Simulation(with_law(fault), engine=engine)
+    called = qc.Simulation(write_guided_urdf(fault), engine=engine)
     shape = qc.references.parse("hover")
     for simulation in (plugged, called):
         simulation.set_state(qc.references.start(simulation, shape, PAIRED))
@@ -134,16 +140,18 @@ def test_the_plugin_is_told_as_the_law_from_python_is(engine):
     geometric = qc.controllers.geometric(spins=PAIRED)
     other = called.run(1.2, controller=geometric, reference=shape)
     assert one.table.tobytes() == other.table.tobytes()
-    told, time = one.topics["health"], one.time
+    health, time = one.topics["health"], one.time
     for name, at, left in (("s2", 0.4, 0.0), ("s4", 0.8, 0.8)):
-        assert (told[name][(time > 0.01) & (time <= at)] == 1).all()
-        assert (told[name][time > at + 0.0011] == left).all()
-    assert (told["s3"][1:] == 1).all()
+        assert (health[name][(time > 0.01) & (time <= at)] == 1).all()
+        assert (health[name][time > at + 0.0011] == left).all()
+    assert (health["s3"][1:] == 1).all()
 
 
 def test_somebody_else_may_find_out():
-    law = plugin("controller", {"law": "geometric", "spins": " ".join(map(str, PAIRED))})
-    plugged = qc.Simulation(with_law(law, plugin("reference", {"shape": "hover"})), engine="eigen")
+    controller = plugin("controller", {"law": "geometric", "spins": " ".join(map(str, PAIRED))})
+    plugged = qc.Simulation(
+        write_guided_urdf(controller, plugin("reference", {"shape": "hover"})), engine="eigen"
+    )
     plugged.set_state(qc.references.start(plugged, qc.references.hover(), PAIRED))
     plugged.publish("effectiveness", [1, 0, 1, 1, 1, 1])
     plugged.publish("health", [1, 0, 1, 1, 1, 1])

@@ -1,4 +1,4 @@
-"""What scripts/fly and scripts/fly_laws.py fly, in short."""
+"""What scripts/fly and scripts/fly_controllers.py fly, in short."""
 
 from __future__ import annotations
 
@@ -53,15 +53,15 @@ def test_what_works_ends_well_and_the_printed_gains_differ_in_the_controller_onl
     assert works == crashes
 
 
-def test_the_flights_of_the_laws_are_held_against_their_bars(program, monkeypatch, capsys):
-    told = program("scripts/fly_laws.py")
-    names = {(case.name, case.engine, case.sim_slow) for case in told.cases()}
-    assert len(names) == len(told.cases())
-    one = replace(told.cases()[0], duration=0.2, seeds=2)
+def test_the_flights_of_the_controllers_are_held_against_their_limits(program, monkeypatch, capsys):
+    script = program("scripts/fly_controllers.py")
+    names = {(case.name, case.engine, case.sim_slow) for case in script.cases()}
+    assert len(names) == len(script.cases())
+    one = replace(script.cases()[0], duration=0.2, seeds=2)
     circle = replace(one, name="circle", reference=lambda: references.circle())
     monkeypatch.setattr(
-        told, "cases", lambda: [one, circle, replace(circle, limit=-1, name="fails")]
+        script, "cases", lambda: [one, circle, replace(circle, limit=-1, name="fails")]
     )
-    assert told.main() == 1
+    assert script.main() == 1
     rows = capsys.readouterr().out.splitlines()[1:]
     assert [row.endswith(" missed") for row in sorted(rows)] == [False, True, False]

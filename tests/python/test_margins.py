@@ -59,7 +59,7 @@ class Own:
 
 @pytest.mark.parametrize("change", [{"thrust": 1.5}, {"delay": 0.01}, {"thrust": 0.9, "lag": 1.3}])
 @pytest.mark.parametrize("kicked", [False, True])
-def test_trials_of_an_own_law_mean_what_those_of_a_shipped_one_mean(change, kicked):
+def test_trials_of_an_own_controller_mean_what_those_of_a_built_in_one_mean(change, kicked):
     plan = Plan({"shipped": "geometric", "own": Own()}, "circle", ["eigen"], ["quadrotor"], {},
                 options_of(1))  # fmt: skip
     shipped, own = (
@@ -80,14 +80,16 @@ def thrust_of(simulation):
     return float(tags["rotorThrustCoeff"])
 
 
-def test_the_inner_loop_of_an_own_law_believes_in_the_vehicle_as_it_is_described():
-    laws_ = {"none": Own(), "its own": Own()}
-    laws_["its own"].inner_loop = qc.InnerLoop(spins=[1, -1, 1, -1])
-    plan = Plan(laws_, "hover", ["eigen"], ["quadrotor"], {}, EvaluateOptions(duration=1.0))
+def test_the_inner_loop_of_an_own_controller_has_the_model_of_the_described_vehicle():
+    own_controllers = {"none": Own(), "its own": Own()}
+    own_controllers["its own"].inner_loop = qc.InnerLoop(spins=[1, -1, 1, -1])
+    plan = Plan(
+        own_controllers, "hover", ["eigen"], ["quadrotor"], {}, EvaluateOptions(duration=1.0)
+    )
     for row in range(2):
         flight = Trial(row, thrust=2.0).make_plan(plan)
-        told = flight.controller.inner_loop.belief
-        assert thrust_of(flight.simulation()) == pytest.approx(2 * thrust_of(told))
+        model = flight.controller.inner_loop.belief
+        assert thrust_of(flight.simulation()) == pytest.approx(2 * thrust_of(model))
     assert flight.controller.inner_loop.spins == [1, -1, 1, -1]
 
 
@@ -110,16 +112,18 @@ def test_the_vehicle_of_a_trial_pushes_resists_and_lags_by_the_factors_asked_for
     options = EvaluateOptions(duration=1.0, dt=1e-4)
     plan = Plan({"own": Own()}, "hover", ["eigen"], [model], {}, options)
 
-    def flown(**factors):
+    def make_simulation(**factors):
         return Trial(0, **factors).make_plan(plan).simulation()
 
-    plain = flown()
+    plain = make_simulation()
     hover = plain.hover_speed
-    assert flown(thrust=4.0).hover_speed == pytest.approx(hover / 2, rel=1e-9)
-    assert flown(drag=3.0, lag=2.0).hover_speed == pytest.approx(hover, rel=1e-9)
+    assert make_simulation(thrust=4.0).hover_speed == pytest.approx(hover / 2, rel=1e-9)
+    assert make_simulation(drag=3.0, lag=2.0).hover_speed == pytest.approx(hover, rel=1e-9)
     assert resistance(plain) > 0
-    assert resistance(flown(drag=3.0)) == pytest.approx(3 * resistance(flown()), rel=1e-6)
-    assert rise(flown(lag=2.0)) == pytest.approx(2 * rise(flown()), rel=0.02)
+    assert resistance(make_simulation(drag=3.0)) == pytest.approx(
+        3 * resistance(make_simulation()), rel=1e-6
+    )
+    assert rise(make_simulation(lag=2.0)) == pytest.approx(2 * rise(make_simulation()), rel=0.02)
 
 
 def in_hover(simulation):
@@ -146,7 +150,7 @@ def rise(simulation):
     return simulation.time
 
 
-def test_a_margin_at_the_end_of_its_search_is_told_as_larger():
+def test_a_margin_at_the_end_of_its_search_is_reported_as_larger():
     row = {"gain_low": 0.1, "gain_high": 10.0, "delay_margin": 0.5}
     assert [format_margin(row, name, "{:g}".format) for name in ENDS] == ["< 0.1", "> 10", "> 0.5"]
     assert format_margin({"gain_high": 9.9}, "gain_high", "{:g}".format) == "9.9"
@@ -167,14 +171,14 @@ def test_effects_that_no_tag_scales_are_named_on_the_terminal_and_on_the_page(
     """As of a vehicle with the motors of a third party, whose tags scale the thrust alone."""
     model = tmp_path / "own.urdf"
     model.write_text(with_plugins(vehicle(mass=1), plugin("own_motor", {}), plugin("odometry", {})))
-    told = f"margins: no tag of '{model}' scales its drag and its lag. box is not searched."
+    warning = f"margins: no tag of '{model}' scales its drag and its lag. box is not searched."
     out = tmp_path / "out"
     command = "evaluate --controller geometric --reference hover --duration 1 --margins"
     assert main([*command.split(), "--model", str(model), "--out", str(out)]) == 0
-    assert f"warning: {told}\n" in capsys.readouterr().err
-    assert told in (out / "report.html").read_text().replace("&#39;", "'")
+    assert f"warning: {warning}\n" in capsys.readouterr().err
+    assert warning in (out / "report.html").read_text().replace("&#39;", "'")
     content = json.loads((out / "evaluation.json").read_text())
-    assert content["unsearched"] == told
+    assert content["unsearched"] == warning
     assert content["margins"][0]["gain_high"] > 1
     assert content["margins"][0]["box_worst"] is None
     assert content["margins"][0]["delay_margin"] > 0
@@ -197,11 +201,11 @@ def test_the_search_finds_the_edge():
 
 
 def test_the_first_loss_counts_however_soon_flights_succeed_again():
-    def lost_for_a_while(trials):
+    def lose_for_a_while(trials):
         return [Outcome("lost" if 0.0285 < t.delay < 0.0295 else "", NAN) for t in trials]
 
     searches = MarginSearch(["one"], [])
-    searches.run(lost_for_a_while)
+    searches.run(lose_for_a_while)
     assert searches.list_rows()[0]["delay_margin"] == pytest.approx(0.0285, abs=6e-4)
 
 
@@ -229,12 +233,12 @@ def options_of(duration):
 
 
 def test_an_interrupted_search_says_so():
-    def interrupted(trials):
+    def interrupt(trials):
         if len(trials) > 1:
             raise KeyboardInterrupt
         return [Outcome("", NAN)]
 
     searches = MarginSearch(["one"], [])
     with pytest.raises(KeyboardInterrupt):
-        searches.run(interrupted)
+        searches.run(interrupt)
     assert searches.list_rows()[0]["failure"] == "not flown: interrupted"

@@ -153,7 +153,7 @@ def test_what_octave_saves_is_read_and_its_text_refused_with_the_remedy(tmp_path
         ({"a": "text"}, "contains a. For 2 rotors, save"),
     ],
 )
-def test_what_is_no_table_is_told(held, says, tmp_path):
+def test_a_variable_that_is_no_table_is_refused(held, says, tmp_path):
     scipy.io.savemat(tmp_path / "c.mat", held)
     with pytest.raises(qc.InputError, match=says):
         read_commands(tmp_path / "c.mat", 2)
@@ -212,7 +212,7 @@ def test_a_layout_that_there_is_not_is_refused(log, tmp_path):
         ({"log": {"time": [0, 1], "signals": 3}}, "give each a label and values"),
     ],
 )
-def test_what_is_no_log_is_told(held, says, log, tmp_path):
+def test_a_file_that_is_no_log_is_refused(held, says, log, tmp_path):
     of_three = {name: column[:3] for name, column in zip(log.columns, log.table.T)}
     scipy.io.savemat(tmp_path / "odd.mat", {**({} if "log" in held else of_three), **held})
     with pytest.raises(qc.InputError, match=says):

@@ -195,7 +195,7 @@ def test_the_value_at_risk_is_the_mean_of_the_worst_tenth():
     assert np.isnan(compute_cvar(np.array([])))
 
 
-def judged(*values):
+def make_outcomes(*values):
     """Outcomes of flights: a number each, None of one that was lost, NaN of one not flown."""
     return [
         Outcome("lost", NAN)
@@ -209,24 +209,24 @@ def judged(*values):
 
 def test_flights_that_an_interrupt_left_out_did_not_fail():
     (row,) = summarise_seeds(
-        [(0, 0)] * 3, [{"seed": i} for i in range(3)], judged(2.0, None, np.nan)
+        [(0, 0)] * 3, [{"seed": i} for i in range(3)], make_outcomes(2.0, None, np.nan)
     )
     assert (row["flights"], row["not_flown"], row["failure_rate"]) == (2, 1, 0.5)
-    (row,) = summarise_seeds([(0, 0)] * 2, [{}] * 2, judged(np.nan, np.nan))
+    (row,) = summarise_seeds([(0, 0)] * 2, [{}] * 2, make_outcomes(np.nan, np.nan))
     assert (row["flights"], row["not_flown"]) == (0, 2)
     assert np.isnan(row["failure_rate"])
     assert count_outcomes(["", "lost", NOT_FLOWN]) == ("3 flights: 1 flown, 1 failed, 1 not flown")
 
 
 def test_a_lost_flight_is_worse_than_any_in_the_value_at_risk():
-    flights = judged(*range(1, 20), None)
+    flights = make_outcomes(*range(1, 20), None)
     (row,) = summarise_seeds([(0, 0)] * 20, [{}] * 20, flights)
     assert row["mean_rms_position"] == 10
     assert row["cvar_rms_position"] == np.inf
 
 
 def test_every_measure_has_an_interval_and_a_paired_difference():
-    first, second = judged(1.0, 2.0, 4.0), judged(1.5, 2.5, 4.5)
+    first, second = make_outcomes(1.0, 2.0, 4.0), make_outcomes(1.5, 2.5, 4.5)
     _, row = summarise_seeds([(0, 0)] * 3 + [(1, 0)] * 3, [{}] * 6, first + second)
     for name in NAN:
         assert row[f"low_{name}"] < row[f"mean_{name}"] < row[f"high_{name}"]

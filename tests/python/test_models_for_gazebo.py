@@ -147,7 +147,7 @@ def test_what_is_felt_is_refused_whatever_is_to_be_ignored(toy, old, new, name):
 
 
 @pytest.mark.parametrize("name", ["pushr", "*", "", "link", "gazebo", "propeller"])
-def test_a_name_that_nothing_goes_by_is_refused_and_told_what_there_is(flown, name):
+def test_an_unknown_name_is_refused_with_the_known_names(flown, name):
     message = refusal(flown, f"<gazebo>{PUSHER}</gazebo>", ignore=["pusher", name])
     assert message.startswith(
         f"ignore {name}: neither the model nor the world has anything of that name"

@@ -136,19 +136,19 @@ def test_a_run_that_is_refused_leaves_its_controller_alone():
                 self.simulation.run(0.01, controller=self)
             return HOVER
 
-    law = Counts()
-    quadrotor("eigen").run(0.01, controller=law)
-    assert law.begun == 1
+    controller = Counts()
+    quadrotor("eigen").run(0.01, controller=controller)
+    assert controller.begun == 1
 
 
-def test_another_thread_is_told_that_it_is_another_one():
-    simulation, told = quadrotor("eigen"), []
+def test_a_call_from_another_thread_is_refused():
+    simulation, messages = quadrotor("eigen"), []
 
     def meddle():
         for move in MOVES.values():
             with pytest.raises(qc.InputError) as error:
                 move(simulation)
-            told.append(str(error.value))
+            messages.append(str(error.value))
 
     def controller(t, state, reference):
         if t == 0:
@@ -158,7 +158,7 @@ def test_another_thread_is_told_that_it_is_another_one():
         return HOVER
 
     simulation.run(0.01, controller=controller)
-    assert told == [
+    assert messages == [
         "this simulation is in use by another thread. Use a separate simulation for each thread."
     ] * len(MOVES)  # fmt: skip
 

@@ -18,7 +18,7 @@ def cells(notebook):
     return [code for kind, code in zip(parts[1::2], parts[2::2]) if not kind.strip()]
 
 
-def shown(code, names):
+def run_cell(code, names):
     """What a notebook shows below a cell: its last expression, if it ends with one."""
     tree = ast.parse(code)
     last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
@@ -36,7 +36,7 @@ def test_a_notebook_runs_and_shows_its_results(notebook, monkeypatch, tmp_path):
     names = {"__name__": "__main__"}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        results = [shown(code, names) for code in cells(notebook)]
+        results = [run_cell(code, names) for code in cells(notebook)]
     assert len(results) > 3
     assert results[-1]
     assert not [result for result in results if " at 0x" in result and "matplotlib" not in result]

@@ -13,7 +13,7 @@ import csv
 import numpy as np
 import pytest
 from test_gazebo_recordings import FOLDERS, name_of
-from test_random_recordings import spawned
+from test_random_recordings import make_simulation
 
 pytestmark = pytest.mark.filterwarnings("ignore::quadcore.QuadcoreWarning")
 
@@ -37,7 +37,7 @@ CASES = list(read_summaries())
 @pytest.mark.parametrize("case, row", CASES, ids=[name_of(case) for case, _ in CASES])
 def test_contact_with_obstacles_is_that_of_the_recording(case, row, monkeypatch):
     monkeypatch.setenv("GAZEBO_MODEL_PATH", str(case.parent / "models"))
-    simulation = spawned(case)
+    simulation = make_simulation(case)
     recorded = np.loadtxt(case / "record.csv.gz", delimiter=",", skiprows=1)
     log = simulation.run(recorded[-1, 0], commands=case / "commands.csv")
     rows = np.rint(recorded[:, 0] / simulation.dt).astype(int)

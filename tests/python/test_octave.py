@@ -82,7 +82,7 @@ def port():
         yield int(server.address.rpartition(":")[2])
 
 
-def test_the_spiral_flown_from_octave_is_the_one_of_the_law_in_the_core(port, tmp_path):
+def test_the_spiral_flown_from_octave_is_that_of_the_controller_in_the_core(port, tmp_path):
     assert main(["info", "quadrotor", "--vehicle", str(tmp_path / "vehicle.mat")]) == 0
     script = MATLAB / "examples" / "fly_spiral.m"
     left = octave(f"port = {port}; seconds = 3; source('{script}')", tmp_path)
@@ -91,7 +91,7 @@ def test_the_spiral_flown_from_octave_is_the_one_of_the_law_in_the_core(port, tm
     np.testing.assert_allclose(left["log"], flown.table, rtol=0, atol=1e-9)
 
 
-def test_octave_is_told_what_the_server_refuses(port, tmp_path):
+def test_octave_reports_what_the_server_refuses(port, tmp_path):
     left = octave(
         f"c = quadcore.connect({port}); quadcore.step(c, [1 2 3 4], 5); try,"
         " quadcore.step(c, [1 NaN 3 4]); catch e, why = e.message; end;"

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import scipy.io
 from flights import quadrotor
-from processes import FALL, LONG, ran, refused
+from processes import FALL, LONG, run_command, run_refused
 
 import quadcore as qc
 from quadcore.cli import main
@@ -34,7 +34,7 @@ def test_commands_that_are_no_real_numbers_are_refused():
 
 @pytest.mark.parametrize("make", [qc.Simulation, qc.BatchSimulation])
 def test_an_engine_and_a_step_that_are_none_are_refused_in_one_line(make):
-    for given, told in (
+    for given, message in (
         ({"engine": None}, "engine is None. Give one of gazebo11, ode, eigen."),
         ({"engine": "\udc80"}, "engine is '\\udc80'. Give one of gazebo11, ode, eigen."),
         ({"engine": 3}, "engine is 3. Give one of gazebo11, ode, eigen."),
@@ -43,14 +43,14 @@ def test_an_engine_and_a_step_that_are_none_are_refused_in_one_line(make):
     ):
         with pytest.raises(qc.InputError) as refusal:
             make("quadrotor", **given)
-        assert str(refusal.value) == told
+        assert str(refusal.value) == message
 
 
-def test_flights_compared_without_commands_are_told_of(capsys):
+def test_flights_compared_without_commands_produce_a_warning(capsys):
     flight = ["compare", "quadrotor", "--engine", "eigen", "--duration", "0.01", "--no-plots"]
     assert main([*flight, "--vary", "motorpid_plugin.kp=0.0005,0.001"]) == 0
-    told = capsys.readouterr().err
-    assert "no rotor command is given" in told and "--controller geometric" in told
+    message = capsys.readouterr().err
+    assert "no rotor command is given" in message and "--controller geometric" in message
 
 
 def test_an_interrupt_inside_an_argument_is_one():
@@ -78,7 +78,7 @@ def test_numbers_are_those_of_a_urdf_everywhere(number, capsys):
 def test_a_pipe_as_commands_is_refused():
     for name in ("c.csv", "c.mat"):
         os.mkfifo(name)
-        assert "is not a regular file" in refused(*FALL, "--commands", name)
+        assert "is not a regular file" in run_refused(*FALL, "--commands", name)
 
 
 def test_a_mat_file_is_not_unpacked_beyond_what_can_be_meant():
@@ -101,7 +101,9 @@ def test_a_csv_file_has_a_largest_size(monkeypatch):
 
 
 def test_engine_and_world_are_varied_alone():
-    assert "Use an axis for each" in refused("compare", "quadrotor", "--vary", "engine,world=eigen")
+    assert "Use an axis for each" in run_refused(
+        "compare", "quadrotor", "--vary", "engine,world=eigen"
+    )
 
 
 def test_a_time_at_which_the_clock_would_stand_still_is_refused():
@@ -140,7 +142,9 @@ def test_a_flight_shorter_than_a_step_is_refused(capsys):
 def test_a_cell_that_a_spreadsheet_would_run_is_text(toy):
     Path("=1+1.urdf").write_text(Path("toy.urdf").read_text())
     assert (
-        ran("compare", "=1+1.urdf", "toy.urdf", "--duration", "0.01", "--out", "out").returncode
+        run_command(
+            "compare", "=1+1.urdf", "toy.urdf", "--duration", "0.01", "--out", "out"
+        ).returncode
         == 0
     )
     assert "1,'=1+1.urdf," in Path("out/table.csv").read_text()
@@ -191,7 +195,7 @@ def test_an_error_about_a_text_by_others_is_one_line_without_control_characters(
         assert str(refusal.value).isprintable() and 0 < len(str(refusal.value)) < 1000
 
 
-def test_a_law_reads_odometry_and_no_other_topic():
+def test_a_controller_reads_odometry_and_no_other_topic():
     simulation = quadrotor("eigen")
     assert list(qc.Odometry(simulation).position) == [0, 0, 10]
     with pytest.raises(qc.InputError, match=r"^topic 'vel_cmd' does not carry odometry\. Name"):
@@ -200,11 +204,11 @@ def test_a_law_reads_odometry_and_no_other_topic():
 
 def test_a_controller_of_another_simulation_does_not_fly_this_one():
     simulation, other = quadrotor("eigen"), quadrotor("eigen")
-    law = qc._core.Controller("geometric", other, other, {}, [])
+    controller = qc._core.Controller("geometric", other, other, {}, [])
     loop = qc._core.ControlLoop(qc._core.Flight(simulation, None, 1), 500, 0)
     hover = qc._core.ReferenceShape("hover", {})
     with pytest.raises(qc.InputError, match="the controller flies another simulation"):
-        loop.follow(1, law, "odom", hover)
+        loop.follow(1, controller, "odom", hover)
     with pytest.raises(qc.InputError, match=r"limits has the shape \(3,\)"):
         loop.advance(1, lambda: [0, 0, 0, 0], [1.0, 1.0, 1.0])
 

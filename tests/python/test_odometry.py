@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flights import BUSY, HOVER, quadrotor
 from scipy.spatial.transform import Rotation
-from sensed import mounted
+from sensed import make_mounted
 
 import quadcore as qc
 
@@ -24,7 +24,7 @@ TAGS = {
 }
 
 
-def tumbling(**parameters):
+def start_tumbling(**parameters):
     simulation = quadrotor(parameters=parameters, spawn=(1, 2, 3, 0.4, -0.3, 2))
     simulation.command(HOVER * [1, 1.01, 1.02, 1])
     return simulation
@@ -50,12 +50,12 @@ def errors(simulation, steps):
 
 
 def test_without_noise_a_message_is_the_truth():
-    for rows in errors(tumbling(), 200).values():
+    for rows in errors(start_tumbling(), 200).values():
         assert np.abs(rows).max() < 1e-15
 
 
 def test_a_noise_tag_is_the_standard_deviation_of_each_component():
-    simulation = tumbling(**TAGS)
+    simulation = start_tumbling(**TAGS)
     steps = 4000
     found = errors(simulation, steps)
     for name, deviation in NOISE.items():
@@ -70,21 +70,21 @@ def test_a_noise_tag_is_the_standard_deviation_of_each_component():
 
 
 def test_noise_of_one_quantity_leaves_the_others_true():
-    found = errors(tumbling(**{"odometry.linearVelocityNoise": 0.3}), 100)
+    found = errors(start_tumbling(**{"odometry.linearVelocityNoise": 0.3}), 100)
     assert found.pop("linear_velocity").std() > 0.1
     for rows in found.values():
         assert np.abs(rows).max() < 1e-15
 
 
 def test_a_noisy_orientation_is_a_unit_quaternion():
-    simulation = tumbling(**{"odometry.orientationNoise": 1})
+    simulation = start_tumbling(**{"odometry.orientationNoise": 1})
     for _ in range(100):
         simulation.step()
         assert np.linalg.norm(part(simulation.topic("odom"), POSE[3:])) == pytest.approx(1)
 
 
 def test_the_twist_may_be_given_in_body_axes():
-    world, body = tumbling(), tumbling(**{"odometry.twistFrame": "body"})
+    world, body = start_tumbling(), start_tumbling(**{"odometry.twistFrame": "body"})
     for simulation in (world, body):
         simulation.step(500)
     state = world.state.copy()
@@ -103,7 +103,7 @@ def test_the_twist_may_be_given_in_body_axes():
     ],
 )
 def test_who_needs_velocities_in_the_world_refuses_those_in_body_axes(controller, who):
-    simulation = tumbling(**{"odometry.twistFrame": "body"})
+    simulation = start_tumbling(**{"odometry.twistFrame": "body"})
     with pytest.raises(qc.QuadcoreError, match=f"{who} requires velocities in world axes"):
         simulation.run(0.1, controller=controller, reference="hover")
 
@@ -128,15 +128,15 @@ def test_at_most_one_message_comes_per_step():
 
 
 def test_its_own_seed_makes_the_noise_independent_of_the_simulations():
-    def flown(seed, **parameters):
+    def fly(seed, **parameters):
         simulation = quadrotor(seed=seed, parameters={**BUSY, **parameters})
         simulation.step(100)
         return simulation.topic("odom")
 
     own = {"odometry.seed": 5}
-    assert flown(1, **own) == flown(2, **own)
-    assert flown(1) != flown(2)
-    assert flown(5) == flown(1, **own)
+    assert fly(1, **own) == fly(2, **own)
+    assert fly(1) != fly(2)
+    assert fly(5) == fly(1, **own)
 
 
 def test_a_state_that_is_set_is_sensed_at_once():
@@ -151,7 +151,7 @@ def test_a_state_that_is_set_is_sensed_at_once():
 
 
 def odometry_at_rest(hangar, seconds=100, **tags):
-    simulation = hangar(mounted("odometry", tags), spawn=(1, 2, 3), engine="eigen", dt=0.01)
+    simulation = hangar(make_mounted("odometry", tags), spawn=(1, 2, 3), engine="eigen", dt=0.01)
     odom = simulation.run(seconds, topics=["odom"]).topics["odom"]
     return {name: np.array(odom[name]) for name in odom}
 
@@ -160,7 +160,7 @@ def test_the_bias_of_odometry_walks(hangar):
     found = []
     for seed in range(30):
         simulation = hangar(
-            mounted("odometry", {"positionWalk": 0.2, "orientationWalk": 1e-3}),
+            make_mounted("odometry", {"positionWalk": 0.2, "orientationWalk": 1e-3}),
             engine="eigen",
             dt=0.01,
             seed=seed,
@@ -172,7 +172,7 @@ def test_the_bias_of_odometry_walks(hangar):
     assert np.std(found) == pytest.approx(math.sqrt(0.01), rel=0.02)
 
 
-def test_odometry_is_told_in_steps_of_its_resolution(hangar):
+def test_odometry_is_rounded_to_its_resolution(hangar):
     odom = odometry_at_rest(
         hangar, positionNoise=0.3, positionResolution=0.25, angularVelocityResolution=0.5
     )
@@ -186,7 +186,7 @@ def test_odometry_is_told_in_steps_of_its_resolution(hangar):
 @pytest.mark.parametrize("rate", [990, 900, 800, 1000, 333])
 @pytest.mark.parametrize("delay", [0.0011, 0.0101, 0.0105, 0.0212])
 def test_a_delay_that_is_no_whole_number_of_steps_loses_no_message(rate, delay, hangar):
-    simulation = hangar(mounted("odometry", {"rate": rate, "delay": delay}), engine="eigen")
+    simulation = hangar(make_mounted("odometry", {"rate": rate, "delay": delay}), engine="eigen")
     simulation.step(200)
     arrived = simulation.topic("odom")["count"]
     assert arrived >= math.floor((0.2 - delay - 0.0021) * rate)

@@ -49,12 +49,12 @@ def test_type_checkers_see_the_options_that_there_are():
 @pytest.mark.parametrize("study", STUDIES)
 def test_signature_docstring_and_parser_have_every_option_with_its_default(study):
     function, kind = STUDIES[study]
-    parameters, told = inspect.signature(function).parameters, inspect.getdoc(function)
+    parameters, docstring = inspect.signature(function).parameters, inspect.getdoc(function)
     actions = next(iter(make_parser()._subparsers._group_actions)).choices[study]._actions
     by_flag = {flag: action for action in actions for flag in action.option_strings}
     for each in fields(kind):
         assert parameters[each.name].default == each.default
-        assert f"\n{each.name}\n    {each.metadata['about'].meaning[0].upper()}" in told
+        assert f"\n{each.name}\n    {each.metadata['about'].meaning[0].upper()}" in docstring
         if each.name != "progress":
             action = by_flag[f"--{each.metadata['about'].flag}"]
             assert action.default == ([] if each.metadata["about"].repeats else each.default)

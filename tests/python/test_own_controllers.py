@@ -74,7 +74,7 @@ def test_objects_and_functions_are_evaluated_each_flight_anew():
     assert found.table[0]["controller"] == "Counting"
 
 
-def test_a_class_in_the_place_of_its_instance_is_told_what_to_write():
+def test_a_class_in_the_place_of_its_instance_is_refused_with_a_remedy():
     class My:
         def __call__(self, t, state, reference):
             return [471, -471, 471, -471]
@@ -95,7 +95,7 @@ def test_faults_of_a_controller_are_rows_and_the_other_flights_finish(capsys):
     error = capsys.readouterr().err.splitlines()
     assert len(error) == 1
     assert "24 of 28 flights failed. The first one: nomodule:X on hover in eigen" in error[0]
-    told = {row["controller"]: row["failure"] for row in rows()}
+    failures = {row["controller"]: row["failure"] for row in rows()}
     for name, says in {
         "pd": "",
         "own:Counts": "",
@@ -112,7 +112,7 @@ def test_faults_of_a_controller_are_rows_and_the_other_flights_finish(capsys):
         "own:Cancels": "controller: BaseException: cancelled",
         "own:Waits": "not done within the time limit of 2 s",
     }.items():
-        assert says in told[name] if says else told[name] == "", name
+        assert says in failures[name] if says else failures[name] == "", name
 
 
 def test_the_time_limit_holds_for_the_mathematical_model_too():
@@ -134,7 +134,7 @@ def test_what_a_module_remembers_of_a_flight_no_other_flight_knows(options):
 def test_what_a_function_or_a_reference_of_ones_own_remembers_stays_in_its_flight():
     calls, places = [], []
 
-    def law(t, state, reference):
+    def controller(t, state, reference):
         calls.append(t)
         return [471 + len(calls), -471, 471, -471]
 
@@ -142,7 +142,7 @@ def test_what_a_function_or_a_reference_of_ones_own_remembers_stays_in_its_fligh
         places.append(t)
         return references.hover()(t)
 
-    found = evaluate([law], [place], seeds=3, duration=0.1, processes=1)
+    found = evaluate([controller], [place], seeds=3, duration=0.1, processes=1)
     assert len({row["max_position"] for row in found.table}) == 1
     assert not calls and not places
 
@@ -166,24 +166,24 @@ def test_a_controller_that_returns_nothing_fails_its_first_flight_with_status_3(
     )
 
 
-def test_what_is_no_python_is_told_with_its_line(capsys):
+def test_invalid_python_is_reported_with_its_line(capsys):
     Path("half.py").write_text("x = 1\ndef f(:\n")
     assert main(["run", "quadrotor", "--controller", "half:f", "--quiet"]) == 2
     error = capsys.readouterr().err
     assert "error: controller 'half:f': SyntaxError: " in error and "half.py:2)" in error
 
 
-def test_a_missing_module_of_a_package_is_told_as_missing(capsys):
+def test_a_missing_module_of_a_package_is_reported_as_missing(capsys):
     assert main(["run", "quadrotor", "--controller", "no.such:Law", "--quiet"]) == 2
     assert "there is no module 'no.such' here or on PYTHONPATH" in capsys.readouterr().err
 
 
-def test_the_time_of_a_controllers_own_calls_is_told():
+def test_the_duration_of_a_controllers_calls_is_reported():
     def slow(t, state, reference):
         time.sleep(0.002)
         return [471, -471, 471, -471]
 
     found = evaluate(["pd", slow], "hover", duration=0.1)
-    law, own = found.outcomes
-    assert law.call < 0.002 <= own.call <= own.slow_call
+    controller, own = found.outcomes
+    assert controller.call < 0.002 <= own.call <= own.slow_call
     assert own.updates == 50

@@ -26,13 +26,13 @@ def pages(tmp_path_factory):
     (folder / "sweep.yaml").write_text(SWEEP)
     speeds = ("--commands", f"{folder}/speeds.csv", "--duration", "2")
     kp, drag = "motorpid_plugin.kp=0.0005,0.001", "drone_plugin.translationalDragCoeff=0,0.01"
-    laws = ("--controller", "geometric,indi", "--reference", "circle,hover", "--seeds", "2")
+    controllers = ("--controller", "geometric,indi", "--reference", "circle,hover", "--seeds", "2")
     log = f"{folder}/log.csv"
     for words in (
         ("run", "quadrotor", *FAST, *speeds, "--log", log),
         ("play", log, "-o", f"{folder}/play/report.html", "--model", "quadrotor"),
         ("compare", "quadrotor", "--vary", kp, "--vary", drag, *FAST, *speeds),
-        ("evaluate", *laws, *FAST, "--duration", "0.5"),
+        ("evaluate", *controllers, *FAST, "--duration", "0.5"),
         ("sweep", f"{folder}/sweep.yaml", "--quiet"),
         ("validate", "--duration", "0.2", "--no-plots", "--quiet"),
     ):

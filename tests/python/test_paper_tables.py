@@ -83,8 +83,8 @@ def test_controllers_are_columns_of_the_tables(in_empty_folder):
 
 
 def test_failures_and_special_characters_are_legible_in_latex():
-    laws = {"a_b": "pd", "lost": lambda t, state, reference: [900, -100, 900, -100]}
-    found = evaluate(laws, "hover", duration=3.0)
+    controllers = {"a_b": "pd", "lost": lambda t, state, reference: [900, -100, 900, -100]}
+    found = evaluate(controllers, "hover", duration=3.0)
     text = make_latex(found.groups)
     assert r"a\_b & lost \\" in text and "1 of 1 failed" in text
     header, first, *_ = make_rows(found.groups)

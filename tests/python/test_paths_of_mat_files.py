@@ -35,12 +35,12 @@ def test_vectors_are_rows_and_a_yaw_among_them_is_flown(kind, width, tmp_path):
         ({**VECTORS, "z": "high"}, "path.mat: z is no vector of real numbers"),
     ],
 )
-def test_what_is_no_path_is_told(held, says, tmp_path):
+def test_a_value_that_is_no_path_is_refused(held, says, tmp_path):
     scipy.io.savemat(tmp_path / "path.mat", held)
     with pytest.raises(qc.InputError, match=says):
         references.parse(str(tmp_path / "path.mat"))
 
 
-def test_files_of_other_kinds_are_told_which_are_read(tmp_path):
+def test_files_of_other_kinds_are_refused_with_the_kinds_that_are_read(tmp_path):
     with pytest.raises(qc.InputError, match=r"p.txt: paths are read from .csv, .mat, .yaml, .yml"):
         references.waypoints(tmp_path / "p.txt")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from flights import ENGINES
-from hooked import CHAPTER2, G, assert_same_bytes, fly, motored, with_fixed_link, with_plugins
+from hooked import CHAPTER2, G, assert_same_bytes, fly, make_motored, with_fixed_link, with_plugins
 from vehicles import MOTOR, ODD, SKEW, plugin, start, text, vehicle
 
 import quadcore as qc
@@ -21,36 +21,36 @@ LOAD = {
 SPEEDS = (510, -505, 515, -508)
 
 
-def laden(**tags):
-    return with_plugins(motored(), plugin("payload", {**LOAD, **tags}))
+def load_payload(**tags):
+    return with_plugins(make_motored(), plugin("payload", {**LOAD, **tags}))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_while_it_rides_it_is_a_link_of_the_urdf(engine, hangar):
     lumped = hangar(
-        with_fixed_link(motored(), "load", MASS, MOMENTS, PLACE, TURN), G, engine=engine
+        with_fixed_link(make_motored(), "load", MASS, MOMENTS, PLACE, TURN), G, engine=engine
     )
-    carrying = hangar(laden(), G, engine=engine)
+    carrying = hangar(load_payload(), G, engine=engine)
     assert carrying.mass == pytest.approx(lumped.mass, rel=1e-15)
     assert np.allclose(carrying.inertia, lumped.inertia, rtol=1e-14, atol=0)
     one, other = (fly(simulation, 5000, SPEEDS) for simulation in (lumped, carrying))
     apart = np.abs(one.position - other.position).max()
     print(engine, "apart", apart)
     assert apart <= 1e-12
-    bare = fly(hangar(motored(), G, engine=engine), 5000, SPEEDS)
+    bare = fly(hangar(make_motored(), G, engine=engine), 5000, SPEEDS)
     assert np.abs(one.position - bare.position).max() > 1
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_after_its_release_the_bare_vehicle_flies_on(engine, hangar):
-    released = hangar(laden(release=0.7), G, engine=engine)
+    released = hangar(load_payload(release=0.7), G, engine=engine)
     fly(released, 700)
     state = released.state.copy()
     assert released.mass > 1.2
     rest = fly(released, 1500)
     assert released.mass < 1.1
     bare = start(
-        hangar(motored(), G, engine=engine), **{n: getattr(state, n) for n in state.__slots__}
+        hangar(make_motored(), G, engine=engine), **{n: getattr(state, n) for n in state.__slots__}
     )
     alone = fly(bare, 1500)
     assert rest.table[1:, 1:].tobytes() == alone.table[1:, 1:].tobytes()  # all but the clock
@@ -76,8 +76,8 @@ def test_ode_and_eigen_approach_each_other_through_a_release(hangar):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_word_on_its_topic_lets_it_go_and_takes_it_up(engine, hangar):
     by_word, by_time = (
-        hangar(laden(), G, engine=engine),
-        hangar(laden(release=0.1), G, engine=engine),
+        hangar(load_payload(), G, engine=engine),
+        hangar(load_payload(release=0.1), G, engine=engine),
     )
     first = [fly(simulation, 100, log_every=100) for simulation in (by_word, by_time)]
     by_word.publish("payload", [0])
@@ -91,7 +91,7 @@ def test_a_word_on_its_topic_lets_it_go_and_takes_it_up(engine, hangar):
 
 
 def test_the_later_of_time_and_word_holds(hangar):
-    simulation = hangar(laden(release=0.1, pickUp=0.2), G)
+    simulation = hangar(load_payload(release=0.1, pickUp=0.2), G)
 
     def rides():
         simulation.step(10)
@@ -111,8 +111,8 @@ def test_the_later_of_time_and_word_holds(hangar):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_what_is_picked_up_was_not_there_before(engine, hangar):
-    simulation = hangar(laden(pickUp=0.1), G, engine=engine)
-    bare = hangar(motored(), G, engine=engine)
+    simulation = hangar(load_payload(pickUp=0.1), G, engine=engine)
+    bare = hangar(make_motored(), G, engine=engine)
     assert simulation.mass == bare.mass
     assert fly(simulation, 100).table.tobytes() == fly(bare, 100).table.tobytes()
     simulation.step()
@@ -121,7 +121,7 @@ def test_what_is_picked_up_was_not_there_before(engine, hangar):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_flight_is_taken_up_again_across_a_release(engine, hangar):
-    simulation = hangar(laden(release=0.3), G, engine=engine)
+    simulation = hangar(load_payload(release=0.3), G, engine=engine)
     fly(simulation, 200)
     before = simulation.snapshot()
     first = simulation.run(0.3)
@@ -148,14 +148,14 @@ def test_a_flight_is_taken_up_again_across_a_release(engine, hangar):
     ],
 )
 def test_a_payload_that_cannot_be_is_refused_with_its_line(tags, says, hangar):
-    urdf = laden(**tags)
+    urdf = load_payload(**tags)
     line = 1 + urdf[: urdf.index("libpayload")].count("\n")
     with pytest.raises(qc.InputError, match=f"urdf:{line}: .*{says}"):
         hangar(urdf, G)
 
 
 def test_a_word_that_is_none_ends_the_flight(hangar):
-    simulation = hangar(laden(), G)
+    simulation = hangar(load_payload(), G)
     simulation.publish("payload", [0.5])
     with pytest.raises(qc.FlightError, match="topic 'payload': riding is neither 1 nor 0"):
         simulation.step()

@@ -27,14 +27,14 @@ DOUBLET = np.column_stack(
 )
 
 
-def hovering(simulation, **members):
+def start_hovering(simulation, **members):
     return start(simulation, rotor_velocity=BALANCED, **members)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_thrust_at_hover_speed_carries_the_weight(hangar, engine):
     simulation = hangar(vehicle(air=CHAPTER2, motor=MOTOR), GRAVITY, engine=engine)
-    hovering(simulation).command(BALANCED)
+    start_hovering(simulation).command(BALANCED)
     log = simulation.run(2, wrenches=True)
     assert log.wrenches["thrust"][0, 2] == pytest.approx(9.8 * simulation.mass, rel=1e-14)
     assert np.abs(log.position).max() < 1e-11
@@ -79,7 +79,7 @@ def errors(hangar, engine, dt):
     simulation = hangar(
         vehicle(ODD, 1, SKEW, COM, CHAPTER2, MOTOR), GRAVITY, WIND, engine=engine, dt=dt
     )
-    hovering(simulation, linear_velocity=[1, 2, -1], angular_velocity=[0.2, -0.1, 0.3])
+    start_hovering(simulation, linear_velocity=[1, 2, -1], angular_velocity=[0.2, -0.1, 0.3])
     log = simulation.run(1, DOUBLET, log_every=round(0.05 / dt))
     exact = reference(log, Gyrostat(ODD, 1, SKEW, COM), WIND)
     apart = np.linalg.norm(log.position - exact[:, :3], axis=1)
@@ -105,8 +105,8 @@ def test_a_flight_of_gazebo_stays_off_the_reference(hangar):
 def test_a_flight_in_wind_is_one_in_still_air_seen_from_it(hangar, engine):
     wind = np.array([3.0, -2.0, 1.0])
     urdf = vehicle(air=FLAPPER, motor=MOTOR)
-    still = hovering(hangar(urdf, GRAVITY, engine=engine))
-    windy = hovering(hangar(urdf, GRAVITY, wind, engine=engine), linear_velocity=wind)
+    still = start_hovering(hangar(urdf, GRAVITY, engine=engine))
+    windy = start_hovering(hangar(urdf, GRAVITY, wind, engine=engine), linear_velocity=wind)
     rest, carried = still.run(2, DOUBLET), windy.run(2, DOUBLET)
     drift = np.outer(rest.time, wind)
     assert np.linalg.norm(rest.position[-1]) > 0.1
@@ -121,7 +121,7 @@ MIRROR = np.array([1, -1, 1])
 def test_mirrored_commands_fly_a_mirrored_flight(hangar, engine, model):
     urdf = vehicle(air={**FLAPPER, "dragModel": model}, motor=MOTOR)
     swap = [0, 3, 2, 1]
-    straight = hovering(hangar(urdf, GRAVITY, engine=engine), linear_velocity=[1, 2, 3])
+    straight = start_hovering(hangar(urdf, GRAVITY, engine=engine), linear_velocity=[1, 2, 3])
     mirrored = start(
         hangar(urdf, GRAVITY, engine=engine),
         rotor_velocity=-BALANCED[swap],
@@ -146,7 +146,7 @@ def test_a_flight_does_not_depend_on_its_heading(hangar, engine):
         simulation = hangar(
             urdf, GRAVITY, turn.apply(wind), engine=engine, spawn=(0, 0, 0, 0, 0, heading)
         )
-        hovering(simulation, linear_velocity=turn.apply([1, 2, 3]))
+        start_hovering(simulation, linear_velocity=turn.apply([1, 2, 3]))
         log = simulation.run(2, DOUBLET)
         attitude = turn.inv() * Rotation.from_quat(log.orientation)
         flights.append((turn.inv().apply(log.position), attitude.as_quat()))
@@ -160,7 +160,7 @@ def test_a_flight_does_not_depend_on_its_heading(hangar, engine):
 def test_the_logged_wrenches_sum_to_the_motion_that_is_seen(hangar, engine, exact, model):
     urdf = vehicle(ODD, 1, SKEW, COM, {**FLAPPER, "dragModel": model}, MOTOR)
     simulation = hangar(urdf, GRAVITY, WIND, engine=engine, dt=1e-4)
-    hovering(simulation, linear_velocity=[1, 2, -1], angular_velocity=[0.2, -0.1, 0.3])
+    start_hovering(simulation, linear_velocity=[1, 2, -1], angular_velocity=[0.2, -0.1, 0.3])
     log = simulation.run(0.5, DOUBLET, wrenches=True)
     true = Gyrostat(ODD, 1, SKEW, COM)
 
@@ -173,7 +173,7 @@ def test_the_logged_wrenches_sum_to_the_motion_that_is_seen(hangar, engine, exac
     rates = zip(log.angular_velocity, log.rotor_velocity)
     spin = turn.apply([true.momentum(w, W) for w, W in rates])
 
-    def seen(quantity):
+    def measure(quantity):
         if engine == "eigen":  # central differences where the command does not change
             smooth = np.abs(DOUBLET[:, :1] - log.time).min(axis=0) > 1.5e-4
             rows = np.flatnonzero(smooth[1:-1]) + 1
@@ -181,9 +181,9 @@ def test_the_logged_wrenches_sum_to_the_motion_that_is_seen(hangar, engine, exac
         rows = np.arange(5000)  # ODE holds the force of the row for the step that begins there
         return rows, np.diff(quantity, axis=0) / 1e-4
 
-    rows, force_seen = seen(momentum)
+    rows, force_seen = measure(momentum)
     assert np.abs(force_seen - force[rows]).max() < 1e-5 * np.abs(force).max()
-    rows, torque_seen = seen(spin)
+    rows, torque_seen = measure(spin)
     assert np.abs(torque_seen - torque[rows]).max() < exact * np.abs(torque).max()
 
 

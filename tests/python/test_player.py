@@ -11,7 +11,7 @@ import zlib
 
 import numpy as np
 import pytest
-from browser import DARK, find_violations, told_when_ready
+from browser import DARK, find_violations, run_script_when_ready
 from scipy.spatial.transform import Rotation, Slerp
 
 import quadcore as qc
@@ -215,17 +215,17 @@ def test_the_pose_shown_is_that_of_the_log_and_nothing_is_requested(tmp_path):
     script = (
         f"{HELP}const times = {times.tolist()};"
         + """
-    told.poses = times.map((t) => {
+    result.poses = times.map((t) => {
       player.go(t);
       const { root } = scene.actors[0].vehicle;
       root.updateMatrixWorld(true);
       return [root.position.toArray(), root.quaternion.toArray()];
     });
-    told.requests = performance.getEntriesByType("resource").map((entry) => entry.name);
+    result.requests = performance.getEntriesByType("resource").map((entry) => entry.name);
     """
     )
     vehicle = read_vehicle(qc.read_model("quadrotor"))
-    found = told_when_ready(make_page([PlayerFlight("a", log, vehicle)]), script, tmp_path)
+    found = run_script_when_ready(make_page([PlayerFlight("a", log, vehicle)]), script, tmp_path)
     assert found["requests"] == []
     turned = Slerp(log.time, Rotation.from_quat(log.orientation))(times)
     for number, (position, orientation) in enumerate(found["poses"]):
@@ -241,15 +241,15 @@ def test_every_flight_has_a_vehicle_a_legend_entry_and_its_colour(count, tmp_pat
     script = (
         HELP
         + """
-    told.vehicles = scene.actors.filter(({ vehicle }) => vehicle.root.visible).length;
-    told.names = cells().map((row) => row[0]);
-    told.colours = [...document.querySelectorAll(".swatch line")].map((line) =>
+    result.vehicles = scene.actors.filter(({ vehicle }) => vehicle.root.visible).length;
+    result.names = cells().map((row) => row[0]);
+    result.colours = [...document.querySelectorAll(".swatch line")].map((line) =>
       [line.getAttribute("stroke"), line.getAttribute("stroke-dasharray")]);
-    told.curves = player.plots.plots[0].series.slice(1).map((one) => one._stroke || one.stroke());
-    told.images = document.images.length;
+    result.curves = player.plots.plots[0].series.slice(1).map((one) => one._stroke || one.stroke());
+    result.images = document.images.length;
     """
     )
-    found = told_when_ready(make_page(flights), script, tmp_path)
+    found = run_script_when_ready(make_page(flights), script, tmp_path)
     assert found["vehicles"] == count and found["images"] == 0
     assert found["names"] == [flight.name for flight in flights]
     expected = [curve_style(i)["color"] for i in range(count)]
@@ -264,13 +264,13 @@ def test_the_table_follows_the_time(tmp_path):
         HELP
         + """
     const slider = document.querySelector(".time");
-    told.start = seen(); slider.value = 2; slider.dispatchEvent(new Event("input"));
-    told.later = seen(); told.cells = cells();
-    told.clock = document.querySelector(".clock").textContent;
-    player.go(0); told.again = seen();
+    result.start = seen(); slider.value = 2; slider.dispatchEvent(new Event("input"));
+    result.later = seen(); result.cells = cells();
+    result.clock = document.querySelector(".clock").textContent;
+    player.go(0); result.again = seen();
     """
     )
-    found = told_when_ready(make_page(flights), script, tmp_path)
+    found = run_script_when_ready(make_page(flights), script, tmp_path)
     assert found["start"] == found["again"] != found["later"]
     at = [np.interp(2.0, log.time, log.position[:, i]) for i in range(3)]
     assert [float(cell) for cell in found["cells"][0][1].split(", ")] == pytest.approx(at, abs=6e-4)
@@ -285,30 +285,30 @@ def test_keys_boxes_cameras_and_plots_change_what_is_drawn(tmp_path):
         + """
     const [first, second] = document.querySelectorAll(".flights input");
     const tick = (name) => document.querySelector(name).click();
-    told.box = changed(() => second.click());
-    told.one = changed(() => press("1"));
-    told.unchecked = !first.checked;
-    told.back = changed(() => { press("1"); second.click(); });
-    told.right = changed(() => press("ArrowRight"));
-    told.plus = changed(() => press("+"));
+    result.box = changed(() => second.click());
+    result.one = changed(() => press("1"));
+    result.unchecked = !first.checked;
+    result.back = changed(() => { press("1"); second.click(); });
+    result.right = changed(() => press("ArrowRight"));
+    result.plus = changed(() => press("+"));
     for (const name of ["trails", "reference", "thrust"])
-      told[name] = changed(() => tick(`.show-${name}`));
-    for (let i = 0; i < 5; ++i) told[`camera ${i}`] = changed(() => press("c"));
-    told.follow = changed(() => document.querySelectorAll(".flights button")[1].click());
+      result[name] = changed(() => tick(`.show-${name}`));
+    for (let i = 0; i < 5; ++i) result[`camera ${i}`] = changed(() => press("c"));
+    result.follow = changed(() => document.querySelectorAll(".flights button")[1].click());
     await new Promise((resolve) => setTimeout(resolve, 50));  // the plots are drawn anew
-    told.plot = changed(() => {
+    result.plot = changed(() => {
       const { left, width, top } = player.plots.plots[0].over.getBoundingClientRect();
       player.plots.plots[0].over.dispatchEvent(new PointerEvent(
         "pointerdown", { clientX: left + width / 2, clientY: top + 9, bubbles: true }));
     });
-    told.middle = Math.abs(player.time - 2) < 0.05;
-    told.still = !changed(() => press("q"));
-    press(" "); told.plays = player.playing; press(" "); told.stops = !player.playing;
-    told.typed = !changed(() => press("1", document.querySelector("select.speed")));
+    result.middle = Math.abs(player.time - 2) < 0.05;
+    result.still = !changed(() => press("q"));
+    press(" "); result.plays = player.playing; press(" "); result.stops = !player.playing;
+    result.typed = !changed(() => press("1", document.querySelector("select.speed")));
     """
     )
     flights = [PlayerFlight("a", flown()), PlayerFlight("b", flown(reference=False, shift=1))]
-    found = told_when_ready(make_page(flights), script, tmp_path)
+    found = run_script_when_ready(make_page(flights), script, tmp_path)
     assert found and all(found.values()), found
 
 
@@ -320,16 +320,16 @@ def test_it_plays_loops_and_follows_the_speed(tmp_path):
     window.requestAnimationFrame = (draw) => frames.push(draw);
     const pass = (ms) => { now += ms; for (const draw of frames.splice(0)) draw(now); };
     document.querySelector(".speed").value = "0.5";
-    player.play(true); pass(0); pass(1000); told.slow = player.time;
+    player.play(true); pass(0); pass(1000); result.slow = player.time;
     document.querySelector(".speed").value = "10";
-    pass(100); told.fast = player.time;
-    pass(1000); told.ended = [player.time, player.playing];
+    pass(100); result.fast = player.time;
+    pass(1000); result.ended = [player.time, player.playing];
     document.querySelector(".loop").checked = true;
     player.go(3.9); player.play(true); pass(1); pass(1000);
-    told.looped = [player.time, player.playing];
+    result.looped = [player.time, player.playing];
     """
     )
-    found = told_when_ready(make_page([PlayerFlight("a", flown())]), script, tmp_path)
+    found = run_script_when_ready(make_page([PlayerFlight("a", flown())]), script, tmp_path)
     assert found["slow"] == pytest.approx(0.5) and found["fast"] == pytest.approx(1.5)
     assert found["ended"] == [4.0, False] and found["looped"] == [0.0, True]
 
@@ -342,15 +342,17 @@ def test_a_link_opens_at_a_moment_and_obstacles_and_ground_stand_in_the_world(tm
     script = (
         HELP
         + """
-    told.boxes = scene.obstacles.map((obstacle) => {
+    result.boxes = scene.obstacles.map((obstacle) => {
       obstacle.geometry.computeBoundingBox();
       const { min, max } = obstacle.geometry.boundingBox;
       return [max.x - min.x, max.y - min.y, max.z - min.z, ...obstacle.position.toArray()];
     });
-    told.floor = scene.floor;
+    result.floor = scene.floor;
     """
     )
-    found = told_when_ready(make_page([PlayerFlight("a", flown())], world=world), script, tmp_path)
+    found = run_script_when_ready(
+        make_page([PlayerFlight("a", flown())], world=world), script, tmp_path
+    )
     assert found["floor"] == 0
     sizes = [(1, 2, 3), (1, 1, 2), (1.4, 1.4, 1.4)]
     assert np.allclose(found["boxes"], [[*size, 1, 2, 3] for size in sizes], atol=1e-6)
@@ -365,11 +367,11 @@ def test_a_gif_has_frames_of_the_flight(tmp_path):
         HELP
         + """
     const bytes = player.makeGif();
-    told.gif = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+    result.gif = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
     """
     )
     flight = PlayerFlight("a", flown(duration=0.4))
-    found = told_when_ready(make_page([flight], camera="whole"), script, tmp_path)
+    found = run_script_when_ready(make_page([flight], camera="whole"), script, tmp_path)
     image = Image.open(BytesIO(base64.b64decode(found["gif"])))
     assert image.size == (560, 360) and image.n_frames == 7
     first = image.convert("RGB")
@@ -384,9 +386,9 @@ def test_two_players_on_one_page_keep_apart(tmp_path):
     both = page.replace(str(sections[0]), str(sections[0]) + str(sections[1]))
     script = """
     quadcore.players.find((player) => player.end > 2).go(2);
-    told.clocks = [...document.querySelectorAll(".clock")].map((clock) => clock.textContent);
+    result.clocks = [...document.querySelectorAll(".clock")].map((clock) => clock.textContent);
     """
-    found = told_when_ready(both, script, tmp_path)
+    found = run_script_when_ready(both, script, tmp_path)
     assert found["clocks"] == ["2.00 of 4.00 s", "0.00 of 1.00 s"]
 
 

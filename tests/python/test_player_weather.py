@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from browser import told_when_ready
+from browser import run_script_when_ready
 from evaluations import FLY
 from test_player import HELP, column_of, contents_of, flown
 
@@ -26,7 +26,7 @@ def befallen(tmp_path):
     return tmp_path / "storm.yaml"
 
 
-def test_what_rides_and_what_blows_is_told_on_topics_and_drawn(tmp_path):
+def test_payload_and_wind_are_published_and_drawn(tmp_path):
     plan = qc.FlightPlan.of(scenario=befallen(tmp_path), engine="eigen", xacro_args={"sim_slow": 1})
     simulation = plan.simulation()
     topics = list_animated_topics(simulation)
@@ -42,7 +42,7 @@ def test_what_rides_and_what_blows_is_told_on_topics_and_drawn(tmp_path):
     assert np.allclose(riding, [0.2, 0.01, -0.02, -0.1])
 
 
-def weathered():
+def make_weathered_log():
     """Wind from the second row on; what is carried goes after 1 s."""
     log = flown()
     blows = np.outer(np.ones(len(log)), [3.0, -4.0, 0.0])
@@ -64,12 +64,15 @@ def test_table_and_scene_show_wind_and_payload(tmp_path):
       wind: scene.actors[0].wind.arrow.visible,
       payload: scene.actors[0].payloads.map((payload) => payload.group.visible),
     });
-    told.start = look(); player.go(0.5); told.laden = look(); player.go(2); told.free = look();
-    told.shown = [shows("wind"), shows("load")];
-    told.plots = player.plots.content.map((panel) => panel.name);
+    result.start = look(); player.go(0.5); result.laden = look(); player.go(2);
+    result.free = look();
+    result.shown = [shows("wind"), shows("load")];
+    result.plots = player.plots.content.map((panel) => panel.name);
     """
     )
-    found = told_when_ready(make_page([PlayerFlight("a", weathered())]), script, tmp_path)
+    found = run_script_when_ready(
+        make_page([PlayerFlight("a", make_weathered_log())]), script, tmp_path
+    )
     assert found["start"] == {"row": ["", "0.25"], "wind": False, "payload": [True]}
     assert found["laden"] == {"row": ["5.0", "0.25"], "wind": True, "payload": [True]}
     assert found["free"] == {"row": ["5.0", ""], "wind": True, "payload": [False]}
@@ -77,11 +80,11 @@ def test_table_and_scene_show_wind_and_payload(tmp_path):
     script = (
         HELP
         + """
-    told.shown = ["wind", "load"].map(
+    result.shown = ["wind", "load"].map(
       (column) => getComputedStyle(document.querySelector(`th.${column}`)).display);
     """
     )
-    calm = told_when_ready(make_page([PlayerFlight("a", flown())]), script, tmp_path)
+    calm = run_script_when_ready(make_page([PlayerFlight("a", flown())]), script, tmp_path)
     assert calm["shown"] == ["none", "none"]
 
 

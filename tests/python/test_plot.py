@@ -143,7 +143,7 @@ def test_a_run_that_can_hardly_be_meant_is_said_and_flown(capsys):
     run = ["run", "quadrotor", "--duration", "0.01", "--quiet"]
     Path("one_way.csv").write_text("t,w1,w2,w3,w4\n0,471,471,471,471\n")
     Path("hover.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
-    for more, told in (
+    for more, expected in (
         ([], "warning: no rotor command is given"),
         (["--commands", "one_way.csv"], "the vehicle hovers at 471, -471, 471, -471 rad/s"),
         (["--commands", "hover.csv"], ""),
@@ -151,7 +151,7 @@ def test_a_run_that_can_hardly_be_meant_is_said_and_flown(capsys):
     ):
         assert main([*run, *more]) == 0
         err = capsys.readouterr().err
-        assert told in err and bool(told) == bool(err)
+        assert expected in err and bool(expected) == bool(err)
     # Whose plugins know in which sense each turns.
     assert main(["run", "hummingbird", *run[2:], "--commands", "one_way.csv"]) == 0
     assert capsys.readouterr().err == ""
@@ -160,10 +160,10 @@ def test_a_run_that_can_hardly_be_meant_is_said_and_flown(capsys):
 def test_the_summary_has_the_maximum_rotor_speed_as_it_was_commanded(capsys):
     Path("hover.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
     run = ["run", "quadrotor", "--duration", "2", "--commands", "hover.csv"]
-    for more, told in ([], "47.1"), (["--xacro", "sim_slow:=1"], "471.0"):
+    for more, expected in ([], "47.1"), (["--xacro", "sim_slow:=1"], "471.0"):
         assert main([*run, *more]) == 0
         (line,) = (row for row in capsys.readouterr().out.splitlines() if "max rotor" in row)
-        assert told in line
+        assert expected in line
         assert ("(commanded 471.0 rad/s)" in line) == (not more)
 
 

@@ -269,7 +269,7 @@ def test_two_plugins_that_write_one_topic_are_refused_by_name(toy):
     assert message.endswith(f":{LINE}: plugin 'first' already writes. Keep one of the two.")
 
 
-def test_a_plugin_that_commands_and_a_caller_who_commands_are_told_of_each_other(bad):
+def test_commands_of_a_plugin_and_of_a_caller_are_reported(bad):
     simulation = bad("command")
     says = f"command() writes topic 'vel_cmd', which {AT} already writes. Keep one of the two."
     assert refusal(simulation.command, [300]) == says  # also before the plugin has written

@@ -13,9 +13,9 @@ from quadcore.studies.evaluate.poles import compute_poles, format_poles, has_pol
 NO_DRAG = {f"drone_plugin.{kind}DragCoeff": 0 for kind in ("induced", "translational", "profile")}
 
 
-def by_axis(law, engine="eigen", slow=1, **parameters):
+def by_axis(controller, engine="eigen", slow=1, **parameters):
     simulation = make_simulation(engine, xacro_args={"sim_slow": slow}, parameters=parameters)
-    return {row["axis"]: row for row in compute_poles(law, simulation)}
+    return {row["axis"]: row for row in compute_poles(controller, simulation)}
 
 
 def test_the_zero_of_the_yaw_is_where_air_and_spin_up_cancel():
@@ -34,9 +34,9 @@ def test_the_zero_of_the_yaw_is_where_air_and_spin_up_cancel():
 
 @pytest.mark.parametrize("scale", [0.8, 1])
 def test_the_printed_gains_are_unstable_in_x_and_y_everywhere_and_in_yaw_at_sim_slow_1(scale):
-    law = controllers.pid_thesis(scale=scale)
+    controller = controllers.pid_thesis(scale=scale)
     for engine, slow in (("eigen", 1), ("gazebo11", 10), ("lagrange", 1)):
-        found = by_axis(law, engine, slow)
+        found = by_axis(controller, engine, slow)
         assert not found["x, y"]["stable"]
         assert found["z"]["stable"]
         assert found["roll, pitch"]["stable"]
@@ -48,8 +48,8 @@ def test_the_printed_gains_are_unstable_in_x_and_y_everywhere_and_in_yaw_at_sim_
 def test_motors_without_lag_leave_the_polynomial_of_routh_and_hurwitz():
     """Around an ideal inner loop x and y are s^3 + Kd s^2 + Kp s + Ki."""
     fast = {"kp_rp": 1e5, "kd_rp": 6e2, "ki_rp": 0}
-    law = controllers.pid_thesis(**fast)
-    found = by_axis(law, **{**NO_DRAG, "motorpid_plugin.kp": 0.07})["x, y"]["poles"]
+    controller = controllers.pid_thesis(**fast)
+    found = by_axis(controller, **{**NO_DRAG, "motorpid_plugin.kp": 0.07})["x, y"]["poles"]
     slow = [pole for pole in found if abs(pole) < 10]
     expected = np.roots([1, 0.125, 2.4, 0.8])
     for pole in expected:
@@ -74,7 +74,7 @@ def from_numbers(start, changes):
     return state
 
 
-def linearise_flight(law, slow, span=0.02):
+def linearise_flight(controller, slow, span=0.02):
     """Poles of plant and controller, from flights of a short span that begin beside a hover."""
     simulation = qc.Simulation(engine="eigen", dt=1e-4, xacro_args={"sim_slow": slow})
     hover = qc.references.hover()
@@ -86,7 +86,7 @@ def linearise_flight(law, slow, span=0.02):
         for sign in (1, -1):
             simulation.reset(0)
             simulation.set_state(from_numbers(start, sign * step))
-            simulation.run(span, controller=law, reference=hover, log_every=100)
+            simulation.run(span, controller=controller, reference=hover, log_every=100)
             ends.append(to_numbers(simulation.state))
         columns.append((ends[0] - ends[1]) / (2 * step.sum()))
     return np.log(np.linalg.eigvals(np.column_stack(columns)).astype(complex)) / span
@@ -95,9 +95,9 @@ def linearise_flight(law, slow, span=0.02):
 @pytest.mark.parametrize("slow", [1, 10])
 @pytest.mark.parametrize("name", ["pd", "pd_compensated"])
 def test_poles_are_those_of_the_linearised_flight_with_drag(name, slow):
-    law = getattr(controllers, name)(rate=10_000)
-    flown = linearise_flight(law, slow)
-    found = by_axis(law, slow=slow)
+    controller = getattr(controllers, name)(rate=10_000)
+    flown = linearise_flight(controller, slow)
+    found = by_axis(controller, slow=slow)
     expected = [pole for axis in ("x, y", "z", "yaw") for pole in found[axis]["poles"]]
     assert len(expected) == 11
     for pole in expected:
@@ -115,9 +115,9 @@ def test_without_drag_poles_are_those_of_the_closed_form():
 
 
 def test_the_linear_delay_margin_is_where_the_loop_with_delay_has_a_pole_on_the_axis():
-    law = controllers.pd(rate=1e6)
-    row = by_axis(law)["z"]
-    gains = read_gains(law)
+    controller = controllers.pd(rate=1e6)
+    row = by_axis(controller)["z"]
+    gains = read_gains(controller)
     lag, delay = 2.8125e-5 / 0.0005, row["delay_margin"]
 
     def loop(s):
@@ -128,16 +128,16 @@ def test_the_linear_delay_margin_is_where_the_loop_with_delay_has_a_pole_on_the_
 
 
 def test_the_yaw_grows_in_flight_as_its_pole_says():
-    law = controllers.pid_thesis(rate=1000)
+    controller = controllers.pid_thesis(rate=1000)
     simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": 1})
     hover = qc.references.hover()
     simulation.set_state(qc.references.start(simulation, hover))
     state = simulation.state.copy()
     state.angular_velocity[:] = 0, 0, 1e-6
     simulation.set_state(state)
-    log = simulation.run(0.9, controller=law, reference=hover)
+    log = simulation.run(0.9, controller=controller, reference=hover)
     yaw = 2 * log.orientation[:, 2]
-    growing = by_axis(law)["yaw"]["poles"][0]
+    growing = by_axis(controller)["yaw"]["poles"][0]
     late = log.time > 0.4
     # e^(a t) (c cos b t + d sin b t) fits what the slower poles leave by then.
     a, b, t = growing.real, abs(growing.imag), log.time[late]
@@ -165,12 +165,14 @@ def test_the_page_names_both_causes_of_the_printed_gains():
 
 @pytest.mark.parametrize(("slow", "fails"), [(1, True), (10, False)])
 def test_kd_2_5_alone_fails_at_sim_slow_1_by_its_yaw(slow, fails):
-    law = controllers.pid_thesis(kd_xy=2.5, rate=1000)
-    assert by_axis(law, slow=slow)["x, y"]["stable"]
-    assert by_axis(law, slow=slow)["yaw"]["stable"] != fails
+    controller = controllers.pid_thesis(kd_xy=2.5, rate=1000)
+    assert by_axis(controller, slow=slow)["x, y"]["stable"]
+    assert by_axis(controller, slow=slow)["yaw"]["stable"] != fails
     simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": slow})
     spiral = qc.references.spiral()
-    log = simulation.run(15, controller=law, reference=spiral, on_reference=True, log_every=10)
+    log = simulation.run(
+        15, controller=controller, reference=spiral, on_reference=True, log_every=10
+    )
     away = np.linalg.norm([log.topics["error"][axis] for axis in "xyz"], axis=0)
     turn = np.abs(log.angular_velocity[:, 2])[log.time > 5]
     assert (away.max() > 0.5) == fails

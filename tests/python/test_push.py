@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from flights import ENGINES
-from hooked import G, assert_same_bytes, fly, motored, with_fixed_link, with_plugins
+from hooked import G, assert_same_bytes, fly, make_motored, with_fixed_link, with_plugins
 from scipy.spatial.transform import Rotation
 from vehicles import ODD, SKEW, plugin, start, text, vehicle, wrenches
 
@@ -16,13 +16,13 @@ POINT = (0.02, 0.03, -0.01)
 FORCE, TORQUE = np.array([1.5, -0.7, 0.4]), np.array([0.03, 0.02, -0.05])
 
 
-def pushed(rotors=(), **tags):
+def add_push(rotors=(), **tags):
     urdf = vehicle(rotors, mass=1.3, inertia=SKEW, com=(0.01, -0.02, 0.03))
     urdf = with_fixed_link(urdf, "arm", 0.05, (1e-5, 2e-5, 2.5e-5), ARM, TURN)
     return with_plugins(urdf, plugin("push", tags))
 
 
-def exerted(simulation):
+def measure_push(simulation):
     """Force and torque about the centre of mass, frame axes, once a step has begun."""
     state = simulation.state.copy()
     simulation.publish("push", [*FORCE, *TORQUE])
@@ -36,7 +36,9 @@ def exerted(simulation):
 @pytest.mark.parametrize("link", ["frame", "arm"])
 def test_a_push_acts_at_its_point_in_its_axes(link, axes, engine, hangar):
     simulation = hangar(
-        pushed(link=link, axes=axes, xyz=text(POINT)), spawn=(1, 2, 3, 0.3, 0.2, 0.1), engine=engine
+        add_push(link=link, axes=axes, xyz=text(POINT)),
+        spawn=(1, 2, 3, 0.3, 0.2, 0.1),
+        engine=engine,
     )
     R_WF = Rotation.from_quat(simulation.state.orientation.copy())
     R_FL = Rotation.from_euler("xyz", TURN) if link == "arm" else Rotation.identity()
@@ -44,14 +46,16 @@ def test_a_push_acts_at_its_point_in_its_axes(link, axes, engine, hangar):
     p_FQ = R_FL.apply(POINT) + (ARM if link == "arm" else 0)
     f, tau = turn.apply(FORCE), turn.apply(TORQUE)
     expected = [*f, *(tau + np.cross(p_FQ - simulation.center_of_mass, f))]
-    assert np.allclose(exerted(simulation), expected, rtol=0, atol=1e-14)
+    assert np.allclose(measure_push(simulation), expected, rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("axes", ["world", "link"])
 def test_a_push_on_a_rotor_moves_the_whole_by_the_laws_of_momentum(axes, engine, hangar):
     tags = {"link": "propeller2", "axes": axes, "xyz": text(POINT)}
-    simulation = hangar(pushed(ODD, **tags), spawn=(0, 0, 0, 0.3, 0.2, 0.1), engine=engine, dt=1e-5)
+    simulation = hangar(
+        add_push(ODD, **tags), spawn=(0, 0, 0, 0.3, 0.2, 0.1), engine=engine, dt=1e-5
+    )
     start(simulation, rotor_angle=[0.3, -0.8, 0.1, 2])
     state = simulation.state.copy()
     simulation.publish("push", [*FORCE, *TORQUE])
@@ -85,7 +89,7 @@ def test_a_push_on_a_rotor_moves_the_whole_by_the_laws_of_momentum(axes, engine,
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_push_lasts_its_time_or_until_the_next(engine, hangar):
-    lasting, timed = (hangar(pushed(**tags), engine=engine) for tags in ({}, {"duration": 0.05}))
+    lasting, timed = (hangar(add_push(**tags), engine=engine) for tags in ({}, {"duration": 0.05}))
     for simulation in (lasting, timed):
         simulation.step(10)
         assert not simulation.state.linear_velocity.any()
@@ -94,7 +98,7 @@ def test_a_push_lasts_its_time_or_until_the_next(engine, hangar):
     assert np.array_equal(lasting.state.linear_velocity, timed.state.linear_velocity)
     for simulation in (lasting, timed):
         simulation.step(50)
-    # 1.38 N on about 1.35 kg, until it is told otherwise.
+    # 1.38 N on about 1.35 kg, until the next message.
     assert np.linalg.norm(lasting.state.linear_velocity) > 0.09
     assert np.linalg.norm(timed.state.linear_velocity) < 0.065
     lasting.publish("push", [0] * 6)
@@ -105,7 +109,7 @@ def test_a_push_lasts_its_time_or_until_the_next(engine, hangar):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_push_by_time_is_logged_from_the_row_on_from_which_it_moves_the_vehicle(engine, hangar):
-    simulation = hangar(pushed(pushes=f"0.02 0.03 {text(FORCE)} {text(TORQUE)}"), engine=engine)
+    simulation = hangar(add_push(pushes=f"0.02 0.03 {text(FORCE)} {text(TORQUE)}"), engine=engine)
     log = simulation.run(0.1, wrenches=True)
     logged = log.wrenches["push"].any(axis=1)
     moves = np.diff(log.linear_velocity, axis=0).any(axis=1)
@@ -120,7 +124,7 @@ def test_a_push_by_time_is_logged_from_the_row_on_from_which_it_moves_the_vehicl
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_push_survives_a_snapshot(engine, hangar):
-    urdf = with_plugins(motored(), plugin("push", {"duration": 0.1, "link": "propeller3"}))
+    urdf = with_plugins(make_motored(), plugin("push", {"duration": 0.1, "link": "propeller3"}))
     simulation = hangar(urdf, G, engine=engine)
     simulation.publish("push", [*FORCE, *TORQUE])
     fly(simulation, 50)
@@ -132,4 +136,4 @@ def test_a_push_survives_a_snapshot(engine, hangar):
 
 def test_a_link_that_is_not_there_is_refused_with_the_nearest(hangar):
     with pytest.raises(qc.InputError, match=r"<link> 'arn' is not a link .*Did you mean 'arm'"):
-        hangar(pushed(link="arn"))
+        hangar(add_push(link="arn"))

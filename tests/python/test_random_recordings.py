@@ -29,7 +29,7 @@ def parameters(case):
     return {name: values for name, *values in map(str.split, lines)}
 
 
-def spawned(case, engine="gazebo11"):
+def make_simulation(case, engine="gazebo11"):
     given = parameters(case)
     simulation = qc.Simulation(
         case / "model.urdf", engine=engine, world=case / "case.world", spawn=given["spawn"]
@@ -44,7 +44,7 @@ def spawned(case, engine="gazebo11"):
 
 @pytest.mark.parametrize("case", FLOWN, ids=name_of)
 def test_a_vehicle_of_any_kind_flies_and_lands_as_recorded(case):
-    simulation = spawned(case)
+    simulation = make_simulation(case)
     if parameters(case)["solver"] == ["world"] and simulation.world.ground_plane:
         # Gazebo's direct solver fails on the ground.
         assert any("solver type world" in warning for warning in simulation.warnings)
@@ -63,28 +63,28 @@ def test_a_vehicle_of_which_gazebo_loses_a_rotor_is_refused(case):
     with pytest.raises(
         qc.InputError, match=r"Gazebo silently drops it .* or use the engine ode or eigen"
     ):
-        spawned(case)
-    spawned(case, "ode").step(10)
+        make_simulation(case)
+    make_simulation(case, "ode").step(10)
 
 
 def test_self_collide_of_a_model_is_warned_of():
     case = next(case for case in FLOWN if case.name == "C_selfcol_3100")
-    (warning,) = (w for w in spawned(case).warnings if "self_collide" in w)
+    (warning,) = (w for w in make_simulation(case).warnings if "self_collide" in w)
     assert "does not affect the motion: <self_collide> (" in warning
     assert "model.urdf:25" in warning
 
 
 @pytest.mark.parametrize("name", ["F_onrotor_03", "F_twoblade_04c"])
-def test_fifty_sweeps_that_do_not_converge_are_told(name):
+def test_fifty_sweeps_that_do_not_converge_are_reported(name):
     case = next(case for case in FLOWN if case.name == name)
-    assert "50 iterations of Gazebo's solver, which leave" in spawned(case).method
-    assert "direct solver" in spawned(case, "ode").method
+    assert "50 iterations of Gazebo's solver, which leave" in make_simulation(case).method
+    assert "direct solver" in make_simulation(case, "ode").method
 
 
 @pytest.mark.parametrize("name", ["C_crash_05", "s_fdir45"])
 def test_restoring_beside_a_contact_repeats_the_bytes(name):
     case = next(case for case in FLOWN if case.name == name)
-    simulation = spawned(case)
+    simulation = make_simulation(case)
     after = 0
     while after < 10:  # steps in the air after an impact are Gazebo's sweeps
         simulation.step()
@@ -92,7 +92,7 @@ def test_restoring_beside_a_contact_repeats_the_bytes(name):
         after = after + 1 if touches else 0
     snapshot = simulation.snapshot()
     first = simulation.run(0.3).table
-    other = spawned(case)
+    other = make_simulation(case)
     other.restore(snapshot)
     assert other.run(0.3).table.tobytes() == first.tobytes()
 
@@ -137,7 +137,7 @@ def test_friction_that_depends_on_the_direction_turns_with_the_vehicle():
     """Sliding along fdir1 is braked by mu1, across it by mu2, whatever the heading."""
     case = next(case for case in FLOWN if case.name == "s_fdir45")
 
-    def slowed(heading, along):
+    def measure_slowdown(heading, along):
         # fdir1 1 1 0 has the length 1.41, by which it multiplies both frictions.
         simulation = qc.Simulation(
             case / "model.urdf", world=case / "case.world", spawn=(0, 0, 0.05, 0, 0, heading)
@@ -152,8 +152,8 @@ def test_friction_that_depends_on_the_direction_turns_with_the_vehicle():
         return (1 - simulation.state.linear_velocity @ v) / 0.05
 
     for heading in (0.0, 0.7, 2.5):
-        assert slowed(heading, True) == pytest.approx(0.2 * 2**0.5 * 9.8, rel=0.1)
-        assert slowed(heading, False) == pytest.approx(0.8 * 2**0.5 * 9.8, rel=0.1)
+        assert measure_slowdown(heading, True) == pytest.approx(0.2 * 2**0.5 * 9.8, rel=0.1)
+        assert measure_slowdown(heading, False) == pytest.approx(0.8 * 2**0.5 * 9.8, rel=0.1)
 
 
 @pytest.mark.parametrize("engine", ["gazebo11", "ode"])
@@ -161,7 +161,7 @@ def test_tags_act_as_they_say(engine, tmp_path):
     """A ball in free fall, with its rotor: gravity, damping, friction, implicit damping."""
     model = tmp_path / "ball.urdf"
 
-    def flown(tags="", dynamics="", steps=500, **start):
+    def fly_ball(tags="", dynamics="", steps=500, **start):
         model.write_text(
             '<robot name="ball"><link name="frame"><inertial><origin xyz="0.01 0 0"/>'
             '<mass value="1"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.012" iyz="0" izz="0.02"/>'
@@ -182,11 +182,11 @@ def test_tags_act_as_they_say(engine, tmp_path):
         return f'<gazebo reference="{name}">{inside}</gazebo>'
 
     off = "<turnGravityOff>true</turnGravityOff>"
-    assert flown().linear_velocity[2] == pytest.approx(-4.9)
-    weightless = flown(reference("frame", off) + reference("rotor", off))
+    assert fly_ball().linear_velocity[2] == pytest.approx(-4.9)
+    weightless = fly_ball(reference("frame", off) + reference("rotor", off))
     assert weightless.linear_velocity[2] == pytest.approx(0, abs=1e-12)
 
-    damped = flown(
+    damped = fly_ball(
         reference("frame", off + "<dampingFactor>0.01</dampingFactor>")
         + reference("rotor", off + "<dampingFactor>0.01</dampingFactor>"),
         steps=100,
@@ -197,11 +197,11 @@ def test_tags_act_as_they_say(engine, tmp_path):
     # The frame takes what the rotor loses: 1/J = 1/0.02 + 1/0.0002, about their common axis.
     spin = {"rotor_velocity": np.array([50.0]), "steps": 100}
     inverse = 1 / 2e-4 + 1 / 0.02
-    rubbed = flown(dynamics='friction="0.01"', **spin)
+    rubbed = fly_ball(dynamics='friction="0.01"', **spin)
     assert rubbed.rotor_velocity[0] == pytest.approx(50 - 0.1 * 0.01 * inverse, rel=1e-2)
     implicit = reference("turn", "<implicitSpringDamper>true</implicitSpringDamper>")
-    stiff = flown(implicit, dynamics='damping="0.1"', **spin)
+    stiff = fly_ball(implicit, dynamics='damping="0.1"', **spin)
     # Backward Euler: w' = w / (1 + dt c / J), stable where the explicit torque would be doubtful.
     assert abs(stiff.rotor_velocity[0]) < 50 / (1 + 1e-3 * 0.1 * inverse) ** 90
-    soft = flown(implicit, dynamics='damping="1e-4"', **spin).rotor_velocity[0]
+    soft = fly_ball(implicit, dynamics='damping="1e-4"', **spin).rotor_velocity[0]
     assert soft == pytest.approx(50 / (1 + 1e-3 * 1e-4 * inverse) ** 100, rel=1e-3)

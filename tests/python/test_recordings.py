@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import ran, refused
+from processes import run_command, run_refused
 from recording_files import (
     make_blackbox,
     make_crazyflie,
@@ -303,13 +303,13 @@ def test_a_damaged_compressed_file_ends_with_one_line(tmp_path):
 
 def test_commands_read_recordings(tmp_path):
     recording = REAL / "nanobench/rep4_excerpt.csv.gz"
-    ran("convert", recording, tmp_path / "a.csv")
+    run_command("convert", recording, tmp_path / "a.csv")
     log, again = qc.Log.of_file(recording), qc.Log.of_file(tmp_path / "a.csv")
     assert np.array_equal(log.table, again.table)
     assert "motors" in again.topics
-    ran("play", recording, "-o", tmp_path / "a.html")
+    run_command("play", recording, "-o", tmp_path / "a.html")
     assert (tmp_path / "a.html").stat().st_size > 10_000
-    ran("plot", recording, "--mapping", "nanobench", "--out", tmp_path / "plots", "--quiet")
+    run_command("plot", recording, "--mapping", "nanobench", "--out", tmp_path / "plots", "--quiet")
     assert list((tmp_path / "plots").glob("*.png"))
-    said = refused("plot", recording, "--mapping", "px4", "--out", tmp_path / "plots")
+    said = run_refused("plot", recording, "--mapping", "px4", "--out", tmp_path / "plots")
     assert "maps ulog files" in said

@@ -29,20 +29,20 @@ def test_a_reference_is_made_of_its_members():
 
 
 @pytest.mark.parametrize(
-    "name, value, told",
+    "name, value, expected",
     [
         ("snap", (1.0, 2.0), "reference.snap has 2 numbers. Give 3."),
         ("yaw_rate", "fast", "reference.yaw_rate"),
         ("yaw", (1.0, 2.0), "reference.yaw"),
     ],
 )
-def test_a_member_that_is_none_is_told_in_one_line(name, value, told):
-    with pytest.raises(qc.InputError, match=told) as error:
+def test_a_wrong_member_is_reported_in_one_line(name, value, expected):
+    with pytest.raises(qc.InputError, match=expected) as error:
         qc.Reference(**{**MEMBERS, name: value})
     assert "\n" not in str(error.value)
 
 
-def test_what_has_the_members_of_a_reference_guides_a_law_as_one_does():
+def test_an_object_with_the_members_of_a_reference_guides_a_controller_as_one_does():
     logs = [
         qc.Simulation("quadrotor", engine="eigen").run(
             0.2, controller="geometric", reference=lambda t, kind=kind: kind(**MEMBERS), **begins
@@ -57,7 +57,7 @@ def test_what_has_the_members_of_a_reference_guides_a_law_as_one_does():
 
 @pytest.mark.parametrize("controller", ["geometric", lambda t, state, reference: [400.0] * 4])
 @pytest.mark.parametrize("given", [(0, 0, 10), None, {"position": (0, 0, 10)}])
-def test_what_is_no_reference_is_told_in_one_line(controller, given):
+def test_an_object_that_is_no_reference_is_refused_in_one_line(controller, given):
     simulation = qc.Simulation("quadrotor")
     with pytest.raises(qc.QuadcoreError) as error:
         simulation.run(0.1, controller=controller, reference=lambda t: given)
@@ -66,17 +66,17 @@ def test_what_is_no_reference_is_told_in_one_line(controller, given):
 
 
 @pytest.mark.parametrize(
-    "name, value, told",
+    "name, value, expected",
     [
         ("snap", None, "the reference has no member snap. Give a quadcore.Reference"),
         ("jerk", (1.0, 2.0), "reference.jerk has 2 numbers. Give 3."),
     ],
 )
-def test_a_law_says_which_member_it_lacks(name, value, told):
+def test_a_missing_member_of_a_controller_is_named(name, value, expected):
     members = {**MEMBERS, name: value}
     if value is None:
         del members[name]
-    with pytest.raises(qc.QuadcoreError, match=told) as error:
+    with pytest.raises(qc.QuadcoreError, match=expected) as error:
         qc.Simulation("quadrotor").run(
             0.1, controller="pd", reference=lambda t: SimpleNamespace(**members)
         )
@@ -84,8 +84,8 @@ def test_a_law_says_which_member_it_lacks(name, value, told):
 
 
 def test_a_fault_inside_a_reference_is_its_own():
-    def broken(t):
+    def raise_error(t):
         return t.nothing
 
     with pytest.raises(AttributeError, match="nothing"):
-        qc.Simulation("quadrotor").run(0.1, controller="pd", reference=broken)
+        qc.Simulation("quadrotor").run(0.1, controller="pd", reference=raise_error)

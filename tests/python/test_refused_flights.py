@@ -33,7 +33,7 @@ def flies(in_empty_folder):
 
 
 @pytest.mark.parametrize(
-    ("command", "told"),
+    ("command", "expected"),
     [
         (
             f"compare quadrotor --vary {SLOW}=1,2 --quiet",
@@ -53,10 +53,10 @@ def flies(in_empty_folder):
         ),
     ],
 )
-def test_flights_that_are_all_refused_are_bad_input(capsys, command, told):
+def test_flights_that_are_all_refused_are_bad_input(capsys, command, expected):
     assert main(command.split()) == 2
     error = capsys.readouterr().err
-    assert error.startswith(f"error: {told}") and error.count("\n") == 1
+    assert error.startswith(f"error: {expected}") and error.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ LATE = "the flight failed at t = 0.060000 s: step(): this simulation is running"
 
 
 @pytest.mark.parametrize(
-    ("command", "told"),
+    ("command", "expected"),
     [
         (f"run quadrotor --controller flies:Late {SPIRAL}", LATE),
         (
@@ -100,10 +100,10 @@ LATE = "the flight failed at t = 0.060000 s: step(): this simulation is running"
         ),
     ],
 )
-def test_bad_input_that_ends_a_flight_under_way_is_a_flight_that_failed(capsys, command, told):
+def test_bad_input_that_ends_a_flight_under_way_is_a_flight_that_failed(capsys, command, expected):
     assert main(command.split()) == 3
     error = capsys.readouterr().err
-    assert error.startswith(f"error: {told}") and error.count("\n") == 1
+    assert error.startswith(f"error: {expected}") and error.count("\n") == 1
     assert main(command.replace("Late", "Early").split()) == 2  # it never flew
 
 
@@ -134,12 +134,12 @@ def test_a_sweep_that_goes_on_with_what_is_there_ends_as_it_did(
 ):
     command = f"sweep --controller {controllers} {SPIRAL} --seeds 2 --out out".split()
     assert main(command) == status
-    told, table = capsys.readouterr().err, Path("out/table.csv").read_bytes()
+    expected, table = capsys.readouterr().err, Path("out/table.csv").read_bytes()
     with open("out/table.csv", newline="") as stream:
         failures = [row["failure"] for row in csv.DictReader(stream)]
     assert [why[: len(begin)] for why, begin in zip(failures, reasons)] == reasons
     for kept in (len(reasons), len(reasons) - 1):
         Path("out/table.csv").write_bytes(b"".join(table.splitlines(keepends=True)[: 1 + kept]))
         assert main([*command, "--resume"]) == status
-        assert capsys.readouterr().err == told
+        assert capsys.readouterr().err == expected
         assert Path("out/table.csv").read_bytes() == table

@@ -76,7 +76,7 @@ def commit(folder):
     git(folder, *who, "commit", "-q", "--allow-empty", "-m", "change")
 
 
-def released(folder, version="1.2.3"):
+def run_release(folder, version="1.2.3"):
     return subprocess.run(
         ["scripts/release", version], cwd=str(folder), capture_output=True, text=True, check=False
     )
@@ -88,11 +88,11 @@ needs_git = pytest.mark.skipif(not shutil.which("git"), reason="there is no git"
 @needs_git
 @pytest.mark.parametrize("version", ["1.2.3", "v1.2.3"])
 def test_what_is_ready_may_be_released_and_tagged(ready, version):
-    done = released(ready, version)
+    done = run_release(ready, version)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("quadcore: 1.2.3 is ready: git tag v1.2.3")
     git(ready, "tag", "v1.2.3")
-    assert released(ready, version).returncode == 0
+    assert run_release(ready, version).returncode == 0
 
 
 @needs_git
@@ -106,11 +106,11 @@ def test_what_is_ready_may_be_released_and_tagged(ready, version):
         ("pyproject.toml", "[project.urls]\n", "", "pyproject.toml: has no [project.urls]"),
     ],
 )
-def test_what_is_not_ready_is_told(ready, name, old, new, complaint):
+def test_an_unfinished_release_is_refused(ready, name, old, new, complaint):
     edit(ready / name, old, new)
-    assert "there are uncommitted changes" in released(ready).stderr
+    assert "there are uncommitted changes" in run_release(ready).stderr
     commit(ready)
-    done = released(ready)
+    done = run_release(ready)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr.startswith(f"quadcore: {complaint}") and done.stderr.count("\n") == 1
 
@@ -119,5 +119,5 @@ def test_what_is_not_ready_is_told(ready, name, old, new, complaint):
 def test_a_tag_is_not_moved(ready):
     git(ready, "tag", "v1.2.3")
     commit(ready)
-    done = released(ready)
+    done = run_release(ready)
     assert (done.returncode, done.stderr) == (1, "quadcore: tag v1.2.3 is another commit's\n")

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flights import quadrotor
-from processes import FALL, LONG, QUADCORE, ran, refused, script
+from processes import FALL, LONG, QUADCORE, run_command, run_refused, script
 
 import quadcore as qc
 from quadcore import _core
@@ -115,7 +115,7 @@ def test_a_log_without_room_for_more_keeps_what_it_has(megabytes):
     assert float(kept.stdout) > 0.5 * megabytes - 10, kept.stderr
 
 
-def grown(*arguments):
+def measure_growth(*arguments):
     """MB that a command takes more than one that flies a tenth of its time."""
 
     def peak(duration):
@@ -131,7 +131,7 @@ def grown(*arguments):
 
 @pytest.mark.parametrize("arguments", [[], ["--wrenches", "--log", "log.csv"]])
 def test_a_long_run_takes_no_more_memory_than_a_short_one(arguments):
-    assert grown(*arguments) < 10  # 100 s with wrenches are 48 MB
+    assert measure_growth(*arguments) < 10  # 100 s with wrenches are 48 MB
 
 
 def test_wrenches_are_logged_when_they_are_asked_for():
@@ -169,12 +169,12 @@ def test_pictures_are_drawn_from_rows_evenly_taken_and_the_last(rows, piece):
 
 def test_output_that_nobody_can_write_is_one_line_and_the_log_is_kept():
     with open("/dev/full", "w") as full:
-        error = refused(*FALL, "--log", "log.csv", stdout=full)
+        error = run_refused(*FALL, "--log", "log.csv", stdout=full)
     assert error == "error: standard output: No space left on device\n"
     assert len(np.loadtxt("log.csv", delimiter=",", skiprows=1)) == 51
     for arguments in (["info", "quadrotor"], ["--help"], ["--version"]):
         with open("/dev/full", "w") as full:
-            refused(*arguments, stdout=full)
+            run_refused(*arguments, stdout=full)
 
 
 @pytest.mark.parametrize("closed", [">&-", "2>&-", "<&-", "<&- >&- 2>&-"])
@@ -203,7 +203,7 @@ def test_any_terminal_and_locale_will_do(environment, toy):
         ["run", "täst€.urdf", "--duration", "0.02", "--out", "out"],
         ["compare", "täst€.urdf", "toy.urdf", "--duration", "0.02", "--out", "both"],
     ):
-        assert ran(*arguments, env=environment).returncode == 0
+        assert run_command(*arguments, env=environment).returncode == 0
     assert Path("out/path.png").exists()
 
 
@@ -227,8 +227,8 @@ try:
 except quadcore.FlightError as error:
     print(error)
 """
-    told = script(text).stdout
-    if "no such locale" in told:
+    output = script(text).stdout
+    if "no such locale" in output:
         pytest.skip("this system has no locale with a decimal comma")
-    assert "t = 0.0" in told
+    assert "t = 0.0" in output
     assert Path("log.csv").read_text().splitlines()[1].count(",") == 17

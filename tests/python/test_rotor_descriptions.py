@@ -23,7 +23,7 @@ def tags_of(model):
         yield element.get("filename"), {tag.tag: (tag.text or "").strip() for tag in element}
 
 
-def described(model, **options):
+def describe_rotors(model, **options):
     return qc.Simulation(model, engine="eigen", **options).rotors
 
 
@@ -31,7 +31,7 @@ def described(model, **options):
 def test_rotors_of_rotors_vehicles_are_those_of_their_motors_tags(model):
     file = "librotors_gazebo_motor_model.so"
     motors = {tags["jointName"]: tags for name, tags in tags_of(model) if name == file}
-    rotors = described(model)
+    rotors = describe_rotors(model)
     assert {rotor.joint for rotor in rotors} == set(motors)
     for rotor in rotors:
         tags = motors[rotor.joint]
@@ -164,7 +164,7 @@ def slowdown_one(model):
     return {f"{motor}.rotorVelocitySlowdownSim": 1 for motor in motors}
 
 
-def measured(model, controller="geometric", **options):
+def evaluate_circle(model, controller="geometric", **options):
     given = {"engines": "eigen", "duration": 6.0, **options}
     (row,) = qc.evaluate(controller, "circle", models=model, **given).table
     return row
@@ -172,8 +172,8 @@ def measured(model, controller="geometric", **options):
 
 @pytest.mark.parametrize("model", ROTORS)
 def test_effort_and_energy_are_those_of_the_same_vehicle_whose_joints_are_not_slowed(model):
-    slowed = measured(model)
-    whole = measured(model, parameters=slowdown_one(model))
+    slowed = evaluate_circle(model)
+    whole = evaluate_circle(model, parameters=slowdown_one(model))
     assert slowed["effort"] == pytest.approx(whole["effort"], rel=0.02)
     assert slowed["energy"] == pytest.approx(whole["energy"], rel=0.001)
 
@@ -211,7 +211,7 @@ class TooFast:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_a_command_of_5000_rad_s_counts_as_saturated(model):
-    row = measured(model, TooFast(), duration=0.4)
+    row = evaluate_circle(model, TooFast(), duration=0.4)
     assert row["failure"] == ""
     assert row["saturated"] == pytest.approx(0.1)
 
@@ -228,6 +228,6 @@ def test_each_rotor_saturates_at_the_limit_of_its_own_motor():
             return command
 
         plan = {"parameters": parameters, "duration": 0.1, "spawn": (0, 0, 10)}
-        saturated.append(measured("firefly", controller, **plan)["saturated"])
+        saturated.append(evaluate_circle("firefly", controller, **plan)["saturated"])
         assert [r.max_speed for r in pilot.rotors].count(400) == 1
     assert saturated == [0, 1]

@@ -124,7 +124,7 @@ WEIGHTLESS = '<sdf version="1.6"><world name="w"><gravity>0 0 0</gravity></world
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_the_frame_bears_what_speeds_a_rotor_up_only_if_it_is_told_so(engine, tmp_path):
+def test_the_frame_bears_the_reaction_of_spin_up_only_with_the_tag(engine, tmp_path):
     world = tmp_path / "weightless.world"
     world.write_text(WEIGHTLESS)
     turned = {}
@@ -281,7 +281,7 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
         "foreign module",
     ],
 )
-def test_what_is_wrong_with_a_motor_is_told_with_its_line_and_a_remedy(old, new, says):
+def test_errors_in_a_motor_are_reported_with_their_line_and_a_remedy(old, new, says):
     flat = re.sub(r">\s+<", "><", qc.read_model("firefly", BARE).document.text)
     path = Path("edited.urdf")
     assert old in flat

@@ -22,7 +22,7 @@ def fault(**tags):
     return f"{opening}{inner}</plugin></gazebo>"
 
 
-def flown(simulation, seconds=0.3):
+def fly_hover(simulation, seconds=0.3):
     return simulation.run(seconds, commands=np.array([[0, *[HOVER] * 6]]))
 
 
@@ -30,7 +30,7 @@ def flown(simulation, seconds=0.3):
 def test_rotors_without_lift_let_the_vehicle_fall(engine, tmp_path):
     all_lost = " ".join(f"0 {rotor} 0" for rotor in range(1, 7))
     simulation = firefly_with(tmp_path, fault(losses=all_lost), engine=engine)
-    log = flown(simulation)
+    log = fly_hover(simulation)
     fallen = -0.5 * 9.8 * log.time * (log.time + (0 if engine == "eigen" else simulation.dt))
     np.testing.assert_allclose(log.position[:, 2] - 10, fallen, rtol=0, atol=2e-3)
     assert np.abs(log.rotor_velocity[-1]).min() > 50  # they turn all the same
@@ -38,7 +38,7 @@ def test_rotors_without_lift_let_the_vehicle_fall(engine, tmp_path):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_share_of_the_lift_is_a_share_of_the_wrench(engine, tmp_path):
-    whole = flown(firefly_with(tmp_path, fault(losses="9 1 0.5"), engine=engine), 0.01)
+    whole = fly_hover(firefly_with(tmp_path, fault(losses="9 1 0.5"), engine=engine), 0.01)
     half = firefly_with(tmp_path, fault(losses="0 1 0.5"), engine=engine)
     half = half.run(0.01, commands=np.array([[0, *[HOVER] * 6]]), wrenches=True)
     whole_again = firefly_with(tmp_path, fault(losses="9 1 0.5"), engine=engine)
@@ -50,7 +50,7 @@ def test_a_share_of_the_lift_is_a_share_of_the_wrench(engine, tmp_path):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_motor_that_is_cut_slows_down_with_its_own_lag(engine, tmp_path):
-    log = flown(firefly_with(tmp_path, fault(cuts="0.2 2"), engine=engine))
+    log = fly_hover(firefly_with(tmp_path, fault(cuts="0.2 2"), engine=engine))
     before = np.searchsorted(log.time, 0.2 - 1e-9)
     since = log.time[before:] - log.time[before]
     slowing = log.rotor_velocity[before, 1] * np.exp(-since / DOWN)

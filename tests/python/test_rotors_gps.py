@@ -41,7 +41,7 @@ def receiver(place=(0, 0), velocity=(0, 0), rate=5):
     )
 
 
-def flown(simulation, seconds):
+def fly_tumbling(simulation, seconds):
     return simulation.run(seconds, commands=TUMBLE, topics=["gps", "ground_speed"])
 
 
@@ -52,31 +52,33 @@ def columns(message, fields):
 def test_it_tells_where_on_earth_its_link_is_and_how_it_moves(tmp_path):
     simulation = firefly_with(tmp_path, receiver(), world="basic", dt=0.001)
     assert not [w for w in simulation.warnings if "<sensor>" in w]
-    log = flown(simulation, 1.1)
-    told = np.arange(0, len(log.time), 200)
-    turn = Rotation.from_quat(log.orientation[told])
-    place = log.position[told] + turn.apply(X_FS)
-    velocity = log.linear_velocity[told] + turn.apply(np.cross(log.angular_velocity[told], X_FS))
+    log = fly_tumbling(simulation, 1.1)
+    sampled_rows = np.arange(0, len(log.time), 200)
+    turn = Rotation.from_quat(log.orientation[sampled_rows])
+    place = log.position[sampled_rows] + turn.apply(X_FS)
+    velocity = log.linear_velocity[sampled_rows] + turn.apply(
+        np.cross(log.angular_velocity[sampled_rows], X_FS)
+    )
     fix, speed = log.topics["gps"], log.topics["ground_speed"]
-    assert np.allclose(columns(fix, "xyz")[told], place, rtol=0, atol=1e-12)
-    assert np.allclose(columns(speed, "xyz")[told], velocity, rtol=0, atol=1e-12)
+    assert np.allclose(columns(fix, "xyz")[sampled_rows], place, rtol=0, atol=1e-12)
+    assert np.allclose(columns(speed, "xyz")[sampled_rows], velocity, rtol=0, atol=1e-12)
     # Five times a second.
-    assert np.array_equal(np.unique(fix["stamp"]).round(9), log.time[told].round(9))
+    assert np.array_equal(np.unique(fix["stamp"]).round(9), log.time[sampled_rows].round(9))
     # Metres per degree at the origin of RotorS' world.
     phi, a, e2 = math.radians(47.3667), 6378137.0, 6.69437999014e-3
     w = math.sqrt(1 - e2 * math.sin(phi) ** 2)
     north = math.pi / 180 * (a * (1 - e2) / w**3 + 500)
     east = math.pi / 180 * (a / w + 500) * math.cos(phi)
-    assert np.allclose((fix["latitude"][told] - 47.3667) * north, place[:, 1], atol=1e-7)
-    assert np.allclose((fix["longitude"][told] - 8.55) * east, place[:, 0], atol=1e-7)
-    assert np.allclose(fix["altitude"][told] - 500, place[:, 2], atol=1e-9)
+    assert np.allclose((fix["latitude"][sampled_rows] - 47.3667) * north, place[:, 1], atol=1e-7)
+    assert np.allclose((fix["longitude"][sampled_rows] - 8.55) * east, place[:, 0], atol=1e-7)
+    assert np.allclose(fix["altitude"][sampled_rows] - 500, place[:, 2], atol=1e-9)
 
 
 def test_its_noise_has_the_deviations_of_the_sensor_and_of_the_module(tmp_path):
     noisy = receiver((3, 6), (0.1, 0.2), rate=0)
     options = {"world": "basic", "dt": 0.001}
-    log = flown(firefly_with(tmp_path, noisy, **options), 4)
-    true = flown(firefly_with(tmp_path, receiver(rate=0), **options), 4)
+    log = fly_tumbling(firefly_with(tmp_path, noisy, **options), 4)
+    true = fly_tumbling(firefly_with(tmp_path, receiver(rate=0), **options), 4)
     for topic, deviations in (("gps", [3, 3, 6]), ("ground_speed", [0.1, 0.1, 0.2])):
         error = columns(log.topics[topic], "xyz") - columns(true.topics[topic], "xyz")
         assert error.std(axis=0) == pytest.approx(deviations, rel=0.05)

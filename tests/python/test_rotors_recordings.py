@@ -50,28 +50,35 @@ def rows(path):
     return np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
 
 
-def shipped(case, told, folder):
+def shipped(case, case_parameters, folder):
     """The vehicle and the world of a case, written anew."""
     world = folder / "case.world"
     ground = GROUND if case.name in FROM_THE_GROUND else ""
-    world.write_text(WORLD.format(**told, ground=ground))
-    arguments = {"slowdown": told["slow"], "sensors": str(told["imu_link"] != "None").lower()}
+    world.write_text(WORLD.format(**case_parameters, ground=ground))
+    arguments = {
+        "slowdown": case_parameters["slow"],
+        "sensors": str(case_parameters["imu_link"] != "None").lower(),
+    }
     parameters = {}
     if case.name == "D_hummingbird_rolling":
         parameters = {f"motor_{i}.rollingMomentCoefficient": 0.001 for i in range(4)}
-    spawn = told["spawn"].split()
+    spawn = case_parameters["spawn"].split()
     return qc.Simulation(
-        told["model"], world=world, spawn=spawn, xacro_args=arguments, parameters=parameters
+        case_parameters["model"],
+        world=world,
+        spawn=spawn,
+        xacro_args=arguments,
+        parameters=parameters,
     )
 
 
-def bar(case, told):
+def bar(case, case_parameters):
     """How far from its recording a flight may end, m."""
     if case.name in FROM_THE_GROUND:
         return 1e-7
-    if float(told["step"]) == 0.01:
+    if float(case_parameters["step"]) == 0.01:
         return 1e-10  # as in RotorS' own world
-    if told["iters"] == "10":
+    if case_parameters["iters"] == "10":
         return 1e-9
     return 1e-8
 
@@ -83,37 +90,39 @@ def test_every_vehicle_that_was_recorded_is_flown():
 
 @pytest.mark.parametrize("case", CASES, ids=name_of)
 def test_a_vehicle_of_rotors_flies_as_recorded(case, tmp_path):
-    told = params(case)
+    case_parameters = params(case)
     if DATA in case.parents:
-        simulation = shipped(case, told, tmp_path)
+        simulation = shipped(case, case_parameters, tmp_path)
         commands = rows(case / "commands.csv.gz")
     else:
-        spawn = told["spawn"].split()
+        spawn = case_parameters["spawn"].split()
         simulation = qc.Simulation(case / "model.urdf", world=case / "case.world", spawn=spawn)
         commands = case / "commands.csv"
     recorded = rows(case / "record.csv.gz")
     log = simulation.run(recorded[-1, 0], commands=commands)
     at = np.rint(recorded[:, 0] / simulation.dt).astype(int)
     apart = np.linalg.norm(log.position[at] - recorded[:, 1:4], axis=1).max()
-    assert apart < bar(case, told)
-    # A flight of seconds is told by its speeds more sharply than by its place.
+    assert apart < bar(case, case_parameters)
+    # Speeds show differences of short flights more sharply than positions do.
     n = simulation.rotor_count
     assert np.abs(log.rotor_velocity[at] - recorded[:, 14 : 14 + n]).max() < 1e-5
 
 
 def test_the_inertial_unit_errs_as_that_of_rotors_which_seeds_nothing():
-    told = rows(DATA / "imu_errors.csv.gz")
+    case_parameters = rows(DATA / "imu_errors.csv.gz")
     simulation = qc.Simulation("firefly", spawn=(0, 0, 10), seed=7)
-    log = simulation.run(told[-1, 0], topics=["imu", "ground_truth_imu"])
-    at = np.rint(told[:, 0] / simulation.dt).astype(int)
+    log = simulation.run(case_parameters[-1, 0], topics=["imu", "ground_truth_imu"])
+    at = np.rint(case_parameters[:, 0] / simulation.dt).astype(int)
 
     def errors(message, walks):
         fields = np.array([message[f] for f in ("ax", "ay", "az", "wx", "wy", "wz")]).T[at]
-        fields[:, :3] -= np.where(told[:, :1] < 0.0015, [0, 0, 9.8], [0, 0, 0])  # then it falls
+        fields[:, :3] -= np.where(
+            case_parameters[:, :1] < 0.0015, [0, 0, 9.8], [0, 0, 0]
+        )  # then it falls
         return fields - walks
 
-    assert np.allclose(log.topics["imu"]["stamp"][at], told[:, 0], rtol=0, atol=1e-12)
-    assert np.abs(errors(log.topics["imu"], told[:, 1:])).max() < 1e-8
+    assert np.allclose(log.topics["imu"]["stamp"][at], case_parameters[:, 0], rtol=0, atol=1e-12)
+    assert np.abs(errors(log.topics["imu"], case_parameters[:, 1:])).max() < 1e-8
     # That without errors walks, too: RotorS does not read the tag with which it says otherwise.
     walk = errors(log.topics["ground_truth_imu"], 0)
     assert np.abs(walk[:, :3]).max() < 1e-8

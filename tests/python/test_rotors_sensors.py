@@ -35,15 +35,15 @@ def test_speeds_for_controllers_reach_the_motors_a_step_later():
 def test_the_base_tells_the_speeds_before_the_motors_act():
     simulation = qc.Simulation("firefly", spawn=(0, 0, 10))
     log = simulation.run(0.1, commands=TUMBLE, topics=["motor_speed", "motor_speed_1"])
-    told = log.topics["motor_speed"]
-    assert np.array_equal(told["w2"][1:], 10 * log.rotor_velocity[:-1, 1])
+    message = log.topics["motor_speed"]
+    assert np.array_equal(message["w2"][1:], 10 * log.rotor_velocity[:-1, 1])
     # The motor's own is that which it sets.
     assert np.allclose(log.topics["motor_speed_1"]["w"][1:], log.rotor_velocity[1:, 1], atol=1e-4)
 
 
 def test_the_odometry_tells_of_the_centre_of_mass_and_of_the_links_origin(fitted):
-    told = plugin("gauge", "odometry_plugin", linkName="mast", odometryTopic="gauge/odometry")
-    simulation = fitted(told, spawn=(1, 2, 10, 0.2, -0.1, 0.5))
+    message = plugin("gauge", "odometry_plugin", linkName="mast", odometryTopic="gauge/odometry")
+    simulation = fitted(message, spawn=(1, 2, 10, 0.2, -0.1, 0.5))
     log = simulation.run(1, commands=TUMBLE, topics=["gauge_odometry"])
     message = log.topics["gauge_odometry"]
     turn = Rotation.from_quat(log.orientation[:-1])
@@ -85,7 +85,7 @@ def test_odometry_is_measured_every_so_many_steps_and_held_back_for_some(fitted)
 
 
 def test_noise_of_odometry_has_the_deviations_that_its_tags_give(fitted):
-    told = plugin(
+    message = plugin(
         "gauge",
         "odometry_plugin",
         linkName="mast",
@@ -95,7 +95,7 @@ def test_noise_of_odometry_has_the_deviations_that_its_tags_give(fitted):
         noiseNormalQuaternion="0.02 0.02 0.02",
     )
     truth = plugin("truth", "odometry_plugin", linkName="mast", odometryTopic="truth")
-    log = fitted(told, truth).run(4, topics=["gauge", "truth"])
+    log = fitted(message, truth).run(4, topics=["gauge", "truth"])
     noisy, true = log.topics["gauge"], log.topics["truth"]
 
     def deviation(field):
@@ -113,13 +113,13 @@ def test_noise_of_odometry_has_the_deviations_that_its_tags_give(fitted):
 
 
 def test_an_inertial_unit_may_take_its_noise_from_the_seed(fitted):
-    def flown(seed, noise):
+    def read_unit(seed, noise):
         unit = plugin("unit", "imu_plugin", linkName="mast", imuTopic="unit", noise=noise)
         return fitted(unit, seed=seed).run(0.05, topics=["unit"]).topics["unit"]["ax"][1:]
 
-    assert np.array_equal(flown(1, "rotors"), flown(2, "rotors"))
-    assert np.array_equal(flown(1, "seeded"), flown(1, "seeded"))
-    assert not np.array_equal(flown(1, "seeded"), flown(2, "seeded"))
+    assert np.array_equal(read_unit(1, "rotors"), read_unit(2, "rotors"))
+    assert np.array_equal(read_unit(1, "seeded"), read_unit(1, "seeded"))
+    assert not np.array_equal(read_unit(1, "seeded"), read_unit(2, "seeded"))
 
 
 def test_a_unit_off_the_centre_feels_how_it_is_carried_round(fitted):
@@ -144,8 +144,8 @@ def test_a_unit_off_the_centre_feels_how_it_is_carried_round(fitted):
     v += turn.apply(np.cross(log.angular_velocity, R_FS.apply([0.02, 0, 0.1])))
     a = np.diff(v, axis=0)[:-1] / 0.001 + [0, 0, 9.8]
     felt = (turn[1:-1] * R_FS).inv().apply(a)
-    told = np.array([message[f][2:] for f in ("ax", "ay", "az")]).T
-    assert np.allclose(told, felt, atol=1e-9)
+    message = np.array([message[f][2:] for f in ("ax", "ay", "az")]).T
+    assert np.allclose(message, felt, atol=1e-9)
 
 
 def test_noise_beyond_all_numbers_is_refused(fitted):

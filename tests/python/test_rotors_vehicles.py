@@ -21,7 +21,7 @@ VEHICLES = ("firefly", "hummingbird", "pelican", "iris", "ardrone", "neo11")
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("model", VEHICLES)
-def test_the_laws_fly_the_vehicles_of_rotors_in_its_world(model, engine):
+def test_the_controllers_fly_the_vehicles_of_rotors_in_its_world(model, engine):
     simulation = qc.Simulation(model, engine=engine, world="basic", spawn=(0, 0, 10))
     assert simulation.dt == 0.01
     step = references.step(dx=1)
@@ -29,13 +29,13 @@ def test_the_laws_fly_the_vehicles_of_rotors_in_its_world(model, engine):
     assert np.linalg.norm(log.position[-1] - step(12).position) < 0.01
 
 
-@pytest.mark.parametrize("law", ["geometric", "indi", "lqr", "pid"])
+@pytest.mark.parametrize("controller", ["geometric", "indi", "lqr", "pid"])
 @pytest.mark.parametrize("model", VEHICLES)
-def test_every_law_hovers_the_vehicles_of_rotors(model, law):
+def test_every_controller_hovers_the_vehicles_of_rotors(model, controller):
     hover = references.hover()
     simulation = qc.Simulation(model, world="basic")
     simulation.set_state(references.start(simulation, hover))
-    log = simulation.run(3, controller=law, reference=hover, log_every=10)
+    log = simulation.run(3, controller=controller, reference=hover, log_every=10)
     assert np.abs(log.position - log.position[0]).max() < 1e-3
 
 
@@ -64,12 +64,12 @@ def test_rotors_own_controller_hovers_as_far_off_as_its_numbers_are_from_the_veh
     rotors = len(simulation.state.rotor_velocity)
     simulation.step(1)
     for _ in range(800):
-        told = simulation.topic("odometry_sensor1_odometry")
-        thrust = mass * 9.81 - kp * (told["z"] - 1) - 4.7 * told["vz"]
+        odometry = simulation.topic("odometry_sensor1_odometry")
+        thrust = mass * 9.81 - kp * (odometry["z"] - 1) - 4.7 * odometry["vz"]
         simulation.publish("command_motor_speed", [np.sqrt(max(thrust, 0) / rotors / k)] * rotors)
         simulation.step(1)
     expected = (mass * 9.81 - simulation.mass * 9.8) / kp
-    assert told["z"] - 1 == pytest.approx(expected, abs=1e-4)
+    assert odometry["z"] - 1 == pytest.approx(expected, abs=1e-4)
 
 
 def checkout():

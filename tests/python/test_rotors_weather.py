@@ -94,12 +94,12 @@ def test_the_magnetometer_turns_the_field_with_its_link(fitted):
     log = fitted(field, noisy).run(1, commands=TUMBLE, topics=["field", "noisy"])
     turn = Rotation.from_quat(log.orientation[:-1]) * R_FS
 
-    def told(topic):
+    def read_topic(topic):
         return turn.apply(np.array([log.topics[topic][f][1:] for f in "xyz"]).T)
 
     earth = [0.000021493, 0.000000815, 0.000042795]
-    assert np.allclose(told("field"), earth, rtol=0, atol=1e-17)
-    error = told("noisy") - earth
+    assert np.allclose(read_topic("field"), earth, rtol=0, atol=1e-17)
+    error = read_topic("noisy") - earth
     assert np.ptp(error[:, [0, 2]], axis=0).max() < 1e-17
     assert 0 < np.abs(error[0, 0]) < 1e-6
     assert 0 < np.abs(error[0, 2]) < 2e-6

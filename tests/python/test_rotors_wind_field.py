@@ -45,7 +45,7 @@ def chance():
 
 
 @pytest.fixture
-def windy(tmp_path):
+def make_firefly(tmp_path):
     """A maker of fireflies in a field."""
 
     def make(text, **tags):
@@ -57,7 +57,7 @@ def windy(tmp_path):
     return make
 
 
-def blowing(simulation, place):
+def measure_wind(simulation, place):
     """Wind that is told where the mast is put."""
     state = simulation.state.copy()
     state.position = np.asarray(place) - X_FS
@@ -68,42 +68,44 @@ def blowing(simulation, place):
     return np.array([simulation.topic("wind_speed")[axis] for axis in "xyz"])
 
 
-def test_on_level_columns_a_field_is_the_trilinear_interpolation_of_its_points(windy, chance):
+def test_on_level_columns_a_field_is_the_trilinear_interpolation_of_its_points(
+    make_firefly, chance
+):
     velocity = chance.normal(size=(3, *SHAPE, 4))
     bottom, top = np.full(SHAPE, 2.0), np.full(SHAPE, 22.0)
-    simulation = windy(field(bottom, top, velocity))
+    simulation = make_firefly(field(bottom, top, velocity))
     axes = [MIN[i] + STEP[i] * np.arange(SHAPE[i]) for i in range(2)]
     known = [RegularGridInterpolator((*axes, 2 + 20 * SHARES), v) for v in velocity]
     inside = np.array([4.0, 4.4, 21.9])
     for place in chance.uniform([-4, -3, 2.1], inside, size=(20, 3)):
         expected = [float(one(place)[0]) for one in known]
-        assert np.allclose(blowing(simulation, place), expected, rtol=0, atol=1e-12)
+        assert np.allclose(measure_wind(simulation, place), expected, rtol=0, atol=1e-12)
 
 
-def test_a_field_follows_the_terrain_and_ends_with_its_grid(windy, chance):
+def test_a_field_follows_the_terrain_and_ends_with_its_grid(make_firefly, chance):
     """Of a wind that grows with the share of the height, the same in all columns."""
     bottom = chance.uniform(0, 3, SHAPE)
     top = bottom + chance.uniform(10, 20, SHAPE)
     rising = np.broadcast_to(SHARES, (*SHAPE, 4))
-    simulation = windy(field(bottom, top, [8 * rising, 0 * rising, -2 * rising]))
+    simulation = make_firefly(field(bottom, top, [8 * rising, 0 * rising, -2 * rising]))
     # Above a column's point, and between four: the mean of what it is in them.
     assert np.allclose(
-        blowing(simulation, [0, -0.5, 9]),
+        measure_wind(simulation, [0, -0.5, 9]),
         np.array([8, 0, -2]) * (9 - bottom[1, 1]) / (top - bottom)[1, 1],
         rtol=0,
         atol=1e-12,
     )
     shares = (9 - bottom[:2, :2]) / (top - bottom)[:2, :2]
-    told = blowing(simulation, [-2, -1.75, 9])
-    assert np.allclose(told, np.array([8, 0, -2]) * shares.mean(), rtol=0, atol=1e-12)
+    wind = measure_wind(simulation, [-2, -1.75, 9])
+    assert np.allclose(wind, np.array([8, 0, -2]) * shares.mean(), rtol=0, atol=1e-12)
     for place in ([-4.1, 0, 9], [4.1, 0, 9], [0, -3.1, 9], [0, 4.6, 9], [0, 0, 40]):
-        assert np.array_equal(blowing(simulation, place), MEAN)
+        assert np.array_equal(measure_wind(simulation, place), MEAN)
 
 
-def test_the_rotors_feel_a_field_and_nothing_pushes_beside_it(windy):
+def test_the_rotors_feel_a_field_and_nothing_pushes_beside_it(make_firefly):
     ones = np.ones((*SHAPE, 4))
     text = field(np.zeros(SHAPE), np.full(SHAPE, 50), [2 * ones, 0 * ones, 0 * ones])
-    simulation = windy(text, windForceMean=5)
+    simulation = make_firefly(text, windForceMean=5)
     (said,) = [w for w in simulation.warnings if "together with a wind field" in w]
     assert "<windForceMean> has no effect" in said
     state = simulation.state.copy()
@@ -137,22 +139,22 @@ GOOD = field(np.zeros(SHAPE), np.ones(SHAPE), np.zeros((3, *SHAPE, 4)))
         ("w:\n", "", None, "w is missing. Write w: followed by its numbers"),
     ],
 )
-def test_what_is_wrong_with_a_field_is_told_with_its_line(windy, old, new, where, says):
+def test_errors_in_a_wind_field_are_reported_with_their_line(make_firefly, old, new, where, says):
     assert old in GOOD
     text = GOOD.replace(old, new, 1)
     if old == "w:\n":
         text = GOOD[: GOOD.index("w:\n")]
-    message = refusal(windy, text)
-    line_told = f":{where}" if where else ""
-    assert re.search(rf"'wind' .*field\.txt{line_told}: {says}", message), message
+    message = refusal(make_firefly, text)
+    expected_line = f":{where}" if where else ""
+    assert re.search(rf"'wind' .*field\.txt{expected_line}: {says}", message), message
 
 
-def test_a_field_without_a_file_is_refused(windy, tmp_path):
+def test_a_field_without_a_file_is_refused(make_firefly, tmp_path):
     for path, says in (
         ("", "<customWindFieldPath> is missing. Add the path"),
         ("elsewhere.txt", r"elsewhere\.txt: the file cannot be read. Give the path of an existing"),
     ):
-        message = refusal(windy, GOOD, **{"customWindFieldPath": path})
+        message = refusal(make_firefly, GOOD, **{"customWindFieldPath": path})
         assert re.search(says, message), message
 
 

@@ -24,12 +24,12 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def written(text, name="storm.yaml"):
+def write_scenario(text, name="storm.yaml"):
     Path(name).write_text(text)
     return name
 
 
-def flown(scenario, duration=0.4, **options):
+def fly_scenario(scenario, duration=0.4, **options):
     plan = qc.FlightPlan.of(
         scenario=scenario,
         xacro_args={"sim_slow": 1, "drag_model": "chapter2"},
@@ -44,7 +44,7 @@ def flown(scenario, duration=0.4, **options):
 
 def test_a_scenario_flies_as_the_model_with_its_plugins_written_out(tmp_path):
     """Each kind of event is the row of a tag that stands in the documentation of the plugin."""
-    scenario = written(
+    scenario = write_scenario(
         "plugins:\n"
         "  wind: {velocity: [3, -2, 0.5]}\n"
         "  parcel: {library: payload, mass: 0.1, xyz: [0.02, -0.01, -0.1]}\n"
@@ -89,8 +89,8 @@ def test_a_scenario_flies_as_the_model_with_its_plugins_written_out(tmp_path):
     text = qc.read_model("quadrotor", arguments).document.text
     urdf = tmp_path / "laden.urdf"
     urdf.write_text(text.replace("</robot>", "".join(by_hand) + "</robot>"))
-    one = flown(scenario)
-    other = flown(None)
+    one = fly_scenario(scenario)
+    other = fly_scenario(None)
     plan = qc.FlightPlan.of(
         urdf,
         engine="eigen",
@@ -105,16 +105,18 @@ def test_a_scenario_flies_as_the_model_with_its_plugins_written_out(tmp_path):
 
 
 def test_a_scenario_that_names_a_plugin_of_the_model_gives_its_tags():
-    scenario = written("plugins: {drone_plugin: {dragModel: chapter2, parasiticDragCoeff: 0.5}}")
+    scenario = write_scenario(
+        "plugins: {drone_plugin: {dragModel: chapter2, parasiticDragCoeff: 0.5}}"
+    )
     plan = qc.FlightPlan.of(scenario=scenario, parameters={"drone_plugin.dragModel": "appendix"})
     of = {p.name: p.value for p in plan.simulation().plugins[0].parameters}
     assert of["parasiticDragCoeff"] == "0.5"
     assert of["dragModel"] == "appendix"  # what is set besides wins
 
 
-def test_events_are_told_by_time():
+def test_events_are_listed_by_time():
     scenario = Scenario(
-        written("events:\n  - {at: 3, cut: 1}\n  - {at: 1.5, weaken: 2, to: 0.5}\n")
+        write_scenario("events:\n  - {at: 3, cut: 1}\n  - {at: 1.5, weaken: 2, to: 0.5}\n")
     )
     assert [(event.time, event.text) for event in scenario.events] == [
         (1.5, "rotor 2 to 0.5"),
@@ -159,18 +161,20 @@ def test_events_are_told_by_time():
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("command", ["run", "evaluate"])
-def test_a_bad_scenario_is_told_in_one_line_with_file_and_line(command, text, line, says, capsys):
-    name = written(text + "\n")
+def test_a_bad_scenario_is_reported_in_one_line_with_file_and_line(
+    command, text, line, says, capsys
+):
+    name = write_scenario(text + "\n")
     if command == "run":
         status = main(["run", "quadrotor", "--scenario", name, "--log", "log.csv", "--quiet"])
     else:
         guided = ["--controller", "geometric", "--reference", "hover"]
         status = main(["evaluate", *guided, "--scenario", f"none,{name}", "--out", "out"])
-    told = capsys.readouterr().err.strip()
+    messages = capsys.readouterr().err.strip()
     assert status == 2
-    assert told.startswith(f"error: storm.yaml:{line}: "), told
-    assert says in told
-    assert "\n" not in told
+    assert messages.startswith(f"error: storm.yaml:{line}: "), messages
+    assert says in messages
+    assert "\n" not in messages
     assert not Path("log.csv").exists()
     assert not Path("out/table.csv").exists()
 
@@ -178,24 +182,24 @@ def test_a_bad_scenario_is_told_in_one_line_with_file_and_line(command, text, li
 @pytest.mark.parametrize("command", ["run", "evaluate"])
 def test_events_after_the_end_are_warned_of_in_one_line(command, capsys):
     events = ["{at: 0.1, cut: 1}", "{at: 0.5, cut: 2}", "{at: 3, weaken: 3, to: 0.5}"]
-    name = written("events:\n" + "".join(f"  - {event}\n" for event in events))
+    name = write_scenario("events:\n" + "".join(f"  - {event}\n" for event in events))
     given = ["--duration", "0.5", "--scenario", name, "--engine", "eigen", *GUIDED, "--quiet"]
     if command == "run":
         given = ["quadrotor", *given]
     else:
         given += ["--reference", "hover", "--seeds", "2", "--out", "out", "--no-plots"]
     assert main([command, *given]) == 0
-    told = [line for line in capsys.readouterr().err.splitlines() if "warning: storm" in line]
-    assert told == [
+    messages = [line for line in capsys.readouterr().err.splitlines() if "warning: storm" in line]
+    assert messages == [
         "warning: storm.yaml:3: the flight ends at 0.5 s, before rotor 2 cut at 0.5 s, "
         "rotor 3 to 0.5 at 3 s"
     ]
 
 
-def test_a_scenario_that_is_not_there_is_told_with_those_that_ship(capsys):
+def test_a_missing_scenario_is_reported_with_the_built_in_ones(capsys):
     assert main(["run", "quadrotor", "--scenario", "calm.yaml"]) == 2
-    told = capsys.readouterr().err
-    assert all(name in told for name in ["none", *SHIPPED])
+    messages = capsys.readouterr().err
+    assert all(name in messages for name in ["none", *SHIPPED])
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -221,14 +225,14 @@ def test_the_mathematical_model_refuses_what_it_cannot_feel(capsys):
         ("plugins: {payload: {mass: 0.1}}", "payload"),
         ("events: [{at: 1, cut: 1}]", "fault"),
     ):
-        scenario = written(text)
+        scenario = write_scenario(text)
         command = ["run", "quadrotor", "--scenario", scenario, "--engine", "lagrange"]
         assert main([*command, *GUIDED, "--duration", "0.1"]) == 2
         assert f"plugin '{name}'" in capsys.readouterr().err
 
 
 def test_a_comparison_flies_in_a_scenario_or_in_several():
-    scenario = written("plugins: {wind: {velocity: [3, 0, 0]}}")
+    scenario = write_scenario("plugins: {wind: {velocity: [3, 0, 0]}}")
     chapter2 = {"drone_plugin.dragModel": "chapter2"}
     options = {"parameters": chapter2, "engine": "eigen", "duration": 0.3}
     table = qc.compare("quadrotor", {"scenario": ["none", scenario]}, **options).table
@@ -239,8 +243,10 @@ def test_a_comparison_flies_in_a_scenario_or_in_several():
     assert list(varied.table["failure"]) == [""]
 
 
-def test_an_evaluation_has_scenarios_for_an_axis_and_tells_each_laws_loss():
-    written("events: [{at: 0.2, push: [3, 0, 0], lasts: 0.1}, {at: 0.5, weaken: 1, to: 0.9}]")
+def test_an_evaluation_has_scenarios_for_an_axis_and_reports_each_controllers_loss():
+    write_scenario(
+        "events: [{at: 0.2, push: [3, 0, 0], lasts: 0.1}, {at: 0.5, weaken: 1, to: 0.9}]"
+    )
     command = ["evaluate", "--controller", "pid,geometric", "--reference", "hover"]
     command += ["--xacro", "sim_slow:=1", "--duration", "1", "--seeds", "2"]
     command += ["--scenario", "none,storm.yaml", "--quiet"]
@@ -249,7 +255,9 @@ def test_an_evaluation_has_scenarios_for_an_axis_and_tells_each_laws_loss():
     assert [row["scenario"] for row in found] == ["none", "none", "storm.yaml", "storm.yaml"] * 2
     losses = json.loads(Path("out/evaluation.json").read_text())["losses"]
     assert [(row["controller"], row["scenario"]) for row in losses] == [
-        (law, scenario) for law in ("pid", "geometric") for scenario in ("none", "storm.yaml")
+        (controller, scenario)
+        for controller in ("pid", "geometric")
+        for scenario in ("none", "storm.yaml")
     ]
     for calm, pushed in (losses[:2], losses[2:]):
         assert (calm["loss"], calm["factor"]) in ((0, 1), (0, None))
@@ -265,13 +273,17 @@ def test_pictures_over_time_have_a_mark_where_something_happens():
     from quadcore.studies.evaluate.event_marks import mark_events
 
     events = Scenario(
-        written("events: [{at: 0.2, cut: 1}, {at: 0.2, weaken: 2, to: 0.5}, {at: 3, cut: 3}]")
+        write_scenario(
+            "events: [{at: 0.2, cut: 1}, {at: 0.2, weaken: 2, to: 0.5}, {at: 3, cut: 3}]"
+        )
     ).events
     figure, axes = plt.subplots()
     axes.plot([0, 1], [0, 1])
     mark_events(figure, events)
-    told = [(text.get_text(), text.xy[0]) for text in axes.texts]
-    assert told == [("rotor 1 cut, rotor 2 to 0.5", 0.2)]  # what is after the flight is not there
+    messages = [(text.get_text(), text.xy[0]) for text in axes.texts]
+    assert messages == [
+        ("rotor 1 cut, rotor 2 to 0.5", 0.2)
+    ]  # what is after the flight is not there
     plt.close(figure)
 
 

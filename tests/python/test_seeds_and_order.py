@@ -12,7 +12,7 @@ from hooked import (
     G,
     assert_same_bytes,
     fly,
-    motored,
+    make_motored,
     with_plugins,
 )
 from vehicles import MOTOR, ODD, SKEW, plugin, vehicle
@@ -72,25 +72,27 @@ def test_where_the_urdf_has_the_shipped_plugins_does_not_matter(engine, hangar):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_reset_with_a_seed_is_a_new_simulation_with_it(engine, hangar):
     urdf = with_plugins(
-        motored(), plugin("buffet", {"deviation": 0.2}), plugin("odometry", {"positionNoise": 0.1})
+        make_motored(),
+        plugin("buffet", {"deviation": 0.2}),
+        plugin("odometry", {"positionNoise": 0.1}),
     )
 
-    def flown(simulation):
+    def fly_on(simulation):
         log = fly(simulation, 200)
         return log, simulation.topic("odom")
 
     simulation = hangar(urdf, G, engine=engine, seed=1)
-    flown(simulation)
+    fly_on(simulation)
     seeds = (5, 2**64 - 1, np.int64(7))
     for seed in seeds:
         simulation.reset(seed=seed)
-        log, odom = flown(simulation)
-        fresh, seen = flown(hangar(urdf, G, engine=engine, seed=seed))
+        log, odom = fly_on(simulation)
+        fresh, seen = fly_on(hangar(urdf, G, engine=engine, seed=seed))
         assert_same_bytes(log, fresh)
         assert odom == seen
     simulation.reset()  # keeps it
-    assert_same_bytes(flown(simulation)[0], log)
-    assert flown(hangar(urdf, G, engine=engine, seed=1))[0].table.tobytes() != log.table.tobytes()
+    assert_same_bytes(fly_on(simulation)[0], log)
+    assert fly_on(hangar(urdf, G, engine=engine, seed=1))[0].table.tobytes() != log.table.tobytes()
 
 
 def test_a_snapshot_brings_its_seed_back():
@@ -114,10 +116,10 @@ def test_a_seed_that_is_none_is_refused_by_reset(seed):
 
 
 def test_each_plugin_has_a_seed_of_its_own(hangar):
-    def told(name, seed):
+    def read_bits(name, seed):
         element = plugin("probe", {}).replace('name="probe"', f'name="{name}"')
         simulation = hangar(with_plugins(vehicle(()), element), seed=seed)
         return simulation.topic("seen")["bits"]
 
-    assert len({told(name, seed) for name in ("one", "other") for seed in (0, 1)}) == 4
-    assert told("one", 0) == told("one", 0)
+    assert len({read_bits(name, seed) for name in ("one", "other") for seed in (0, 1)}) == 4
+    assert read_bits("one", 0) == read_bits("one", 0)

@@ -143,7 +143,7 @@ def test_what_is_no_request_is_answered_with_why(served, sent, what):
         (message(2, 5, 1, 400), "incomplete message: 16 of 40 bytes"),
     ],
 )
-def test_a_client_that_dies_within_a_message_is_told_of(served, sent, what):
+def test_a_client_that_dies_within_a_message_is_reported(served, sent, what):
     port, said = served
     with socket.create_connection(("127.0.0.1", port)) as other:
         other.sendall(sent)
@@ -292,7 +292,7 @@ def test_a_full_disk_refuses_the_first_step_and_changes_nothing(tmp_path):
         thread.join(60)
 
 
-def test_a_full_disk_is_told_to_the_client_of_the_command(tmp_path):
+def test_a_full_disk_is_reported_to_the_client_of_the_command(tmp_path):
     log = tmp_path / "log.csv"
     log.symlink_to("/dev/full")
     command = [sys.executable, "-m", "quadcore", "serve", "quadrotor", "--engine", "eigen"]
@@ -339,7 +339,7 @@ def test_an_address_that_is_taken_is_refused(served, tmp_path):
     assert taken.read_text() == "not a socket"
 
 
-def test_a_log_that_cannot_be_written_is_told_before_anything_flies(tmp_path):
+def test_an_unwritable_log_is_refused_before_any_flight(tmp_path):
     def unwritable():
         raise qc.InputError("the log cannot be written")
 

@@ -164,7 +164,7 @@ def test_a_rotor_on_a_hinge_may_turn_half_a_turn_per_step_and_no_more(engine):
 def test_a_small_vehicle_saturates_in_eigen_at_more_than_half_a_turn_per_step():
     """The rotor's angle is a periodic state there: coarse steps fly as fine ones do."""
 
-    def flown(dt):
+    def fly_step(dt):
         free = {"motorpid_plugin.maxVelocity": 1e9}
         simulation = qc.Simulation(
             "crazyflie", engine="eigen", dt=dt, parameters=free, spawn=(0, 0, 9)
@@ -178,7 +178,7 @@ def test_a_small_vehicle_saturates_in_eigen_at_more_than_half_a_turn_per_step():
         simulation.step(250)
         return simulation
 
-    coarse, fine = flown(1e-3), flown(5e-4)
+    coarse, fine = fly_step(1e-3), fly_step(5e-4)
     assert coarse.time == fine.time
     assert np.abs(coarse.state.rotor_velocity).min() * coarse.dt > np.pi
     assert [w for w in coarse.warnings if "half a turn" in w] == coarse.warnings[-1:]

@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
-from browser import assert_it_plays, seen, what_sticks_out
+from browser import assert_it_plays, look_at_pages, what_sticks_out
 
 SITE = Path(__file__).resolve().parents[2] / "build" / "docs" / "html"
 WIDTHS = (390, 1280)  # px
@@ -36,14 +36,14 @@ class Page(html.parser.HTMLParser):
         self.feed(file.read_text())
 
     def handle_starttag(self, tag, attrs):
-        told = dict(attrs)
-        self.names |= {told[key] for key in ("id", "name") if told.get(key)}
+        attributes = dict(attrs)
+        self.names |= {attributes[key] for key in ("id", "name") if attributes.get(key)}
         if tag == "a":
-            self.links.add(told.get("href") or "")
-        elif tag == "link" and told["rel"] not in ("index", "search", "next", "prev"):
-            self.fetched.add(told["href"])
-        if told.get("src"):
-            self.fetched.add(told["src"])
+            self.links.add(attributes.get("href") or "")
+        elif tag == "link" and attributes["rel"] not in ("index", "search", "next", "prev"):
+            self.fetched.add(attributes["href"])
+        if attributes.get("src"):
+            self.fetched.add(attributes["src"])
 
 
 @pytest.fixture(scope="module")
@@ -122,7 +122,7 @@ async function look(view, inside) {
 
 def test_a_search_of_the_site_finds_the_page_wanted_among_the_first_three(tmp_path):
     script = f"const QUERIES = {json.dumps(FOUND)};{SEARCH}"
-    (found,) = seen(script, [SITE / "search.html"], [1280], tmp_path).values()
+    (found,) = look_at_pages(script, [SITE / "search.html"], [1280], tmp_path).values()
     firsts = {
         query: [Path(place).relative_to(SITE).with_suffix("").as_posix() for place in places]
         for query, places in found.items()

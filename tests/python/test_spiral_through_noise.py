@@ -10,7 +10,7 @@ import quadcore as qc
 VELOCITIES = {"odometry.linearVelocityNoise": 5e-3, "odometry.angularVelocityNoise": 5e-3}
 
 
-def worst(engine, slow, noise, seeds):
+def find_max_error(engine, slow, noise, seeds):
     """Largest error of the last 10 s of all seeds, m."""
     found = qc.evaluate(
         "geometric", "spiral", engine, seeds=seeds, parameters=noise, xacro_args={"sim_slow": slow}
@@ -29,12 +29,12 @@ def worst(engine, slow, noise, seeds):
     ],
 )
 def test_the_noise_of_the_thesis_leaves_it_close(engine, slow, seeds, bar):
-    """scripts/fly_laws.py flies 20 seeds of each."""
-    assert 0 < worst(engine, slow, NOISE, seeds) <= bar
+    """scripts/fly_controllers.py flies 20 seeds of each."""
+    assert 0 < find_max_error(engine, slow, NOISE, seeds) <= bar
 
 
 @pytest.mark.parametrize(
     ("engine", "slow"), [("eigen", 1), ("ode", 1), ("gazebo11", 1), ("gazebo11", 10)]
 )
 def test_noisy_velocities_besides_leave_it_within_a_millimetre(engine, slow):
-    assert 0.15e-3 < worst(engine, slow, {**NOISE, **VELOCITIES}, 2) < 1e-3
+    assert 0.15e-3 < find_max_error(engine, slow, {**NOISE, **VELOCITIES}, 2) < 1e-3

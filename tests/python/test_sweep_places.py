@@ -121,14 +121,14 @@ def test_a_pool_is_given_few_tasks_at_a_time():
 
     with Counting(2) as threads:
 
-        def ended(*_):
+        def end_worker(*_):
             threads.under_way -= 1
 
         qc.sweep(
             function=lambda point: point["a"],
             vary={"a": list(range(50))},
             executor=threads,
-            progress=ended,
+            progress=end_worker,
         )
     assert threads.most <= 5
 
@@ -171,7 +171,7 @@ def test_models_travel_as_documents():
 
 
 @contextmanager
-def ended(processes):
+def end_worker(processes):
     try:
         yield processes
     finally:
@@ -195,7 +195,7 @@ def cluster(workers):
     """A scheduler and workers as processes of this machine."""
     pytest.importorskip("distributed")
     started = [dask("scheduler", "--port", "0", "--scheduler-file", "at.json")]
-    with ended(started):
+    with end_worker(started):
         until = time.monotonic() + LONG
         while not Path("at.json").exists() and time.monotonic() < until:
             time.sleep(0.05)
@@ -225,7 +225,7 @@ def test_a_cluster_may_lose_workers_gain_some_and_be_lost_itself():
             stdout=subprocess.DEVNULL,
             text=True,
         )
-        with ended([sweeping]):
+        with end_worker([sweeping]):
             until = time.monotonic() + LONG
             while not (Path("out/table.csv").exists() and len(lines("out")) > 5):
                 assert time.monotonic() < until and sweeping.poll() is None

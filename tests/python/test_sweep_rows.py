@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import LONG, QUADCORE, ran, refused, script
+from processes import LONG, QUADCORE, run_command, run_refused, script
 from sweeps import lines, rows, sweep
 
 import quadcore as qc
@@ -36,7 +36,7 @@ def test_rows_are_in_order_whatever_the_processes_are():
 
 
 def test_whatever_kills_a_sweep_it_goes_on_where_it_was():
-    assert ran(*SMALL, "--out=whole").returncode == 0
+    assert run_command(*SMALL, "--out=whole").returncode == 0
     chance = random.Random(7)
     for _ in range(3):
         process = subprocess.Popen([*QUADCORE, *SMALL, "--out=killed", "--resume"])
@@ -48,7 +48,7 @@ def test_whatever_kills_a_sweep_it_goes_on_where_it_was():
         process.wait()
     before = len_of("killed")
     assert before > 3
-    assert ran(*SMALL, "--out=killed", "--resume").returncode == 0
+    assert run_command(*SMALL, "--out=killed", "--resume").returncode == 0
     assert lines("killed") == lines("whole")
 
 
@@ -103,7 +103,7 @@ def test_rows_that_are_there_are_not_overwritten_unasked():
 
 
 @pytest.mark.parametrize(
-    ("changed", "told"),
+    ("changed", "expected"),
     [
         ({"duration": 0.6}, "table.csv:2: the row has other inputs"),
         ({"parameters": {"odometry.positionNoise": 1e-3}}, "table.csv:2: the row has other"),
@@ -116,9 +116,9 @@ def test_rows_that_are_there_are_not_overwritten_unasked():
         ),
     ],
 )
-def test_changed_inputs_are_noticed(changed, told):
+def test_changed_inputs_are_noticed(changed, expected):
     sweep(out="out")
-    with pytest.raises(qc.InputError, match=told):
+    with pytest.raises(qc.InputError, match=expected):
         sweep(out="out", resume=True, **changed)
     assert len(lines("out")) == 13
 
@@ -148,11 +148,11 @@ def test_a_disk_that_fills_up_keeps_whole_rows():
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
 
-    error = refused(*SMALL, "--out=out", preexec_fn=limit)
+    error = run_refused(*SMALL, "--out=out", preexec_fn=limit)
     assert "table.csv: cannot be written: File too large" in error
     text = Path("out/table.csv").read_text()
     assert text.endswith("\n") and 2000 < len(text) <= 3000
-    assert ran(*SMALL, "--out=out", "--resume").returncode == 0
+    assert run_command(*SMALL, "--out=out", "--resume").returncode == 0
     assert [int(row["row"]) for row in rows("out")] == list(range(40))
 
 
@@ -333,7 +333,7 @@ def test_a_sweep_that_waited_for_another_finds_what_that_one_left():
     """It may have put the file in order meanwhile: another file has the name then."""
     Path("waits.py").write_text(WAITS)
 
-    def begun():
+    def start_process():
         return subprocess.Popen([sys.executable, "waits.py"])
 
     def until(wanted):
@@ -341,15 +341,15 @@ def test_a_sweep_that_waited_for_another_finds_what_that_one_left():
         while not wanted():  # looked at without a pause: the file is open for moments only
             assert time.monotonic() < end
 
-    first = begun()
+    first = start_process()
     until(lambda: len_of("swept") == 4)  # the head, and all rows but that which waits
-    second = begun()
+    second = start_process()
     table = os.path.abspath("swept/table.csv")
     until(lambda: table in open_files(second.pid) or second.poll() is not None)
     Path("go").touch()
     assert first.wait() == 0
     if second.wait() != 0:  # a busy machine outlasts its patience
-        assert begun().wait() == 0
+        assert start_process().wait() == 0
     assert Path("calls").read_text() == "xxxx"
     assert [row["a"] for row in rows("swept")] == ["3", "1", "2", "4"]
 
@@ -364,11 +364,11 @@ def open_files(pid):
 
 @pytest.mark.parametrize("held", ["partial", "closure"])
 def test_nobody_can_tell_what_a_function_holds_besides_its_text(held):
-    def bound(value):
+    def make_score(value):
         return lambda point: value
 
     for value in (1.0, 2.0):
-        function = functools.partial(_second, value) if held == "partial" else bound(value)
+        function = functools.partial(_second, value) if held == "partial" else make_score(value)
         call = functools.partial(qc.sweep, function=function, vary={"a": [1, 2]}, out="swept")
         if value == 1.0:
             call(processes=1)

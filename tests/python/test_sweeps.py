@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import ran
+from processes import run_command
 from sweeps import MASS, ishigami, rows, sweep
 
 import quadcore as qc
@@ -174,20 +174,22 @@ def test_the_command_line_of_a_row_flies_it_again(in_empty_folder):
         "vary: {controller.kp_xy: 'uniform:2:3', frame.mass: [1.1], scenario: [gusty]}\n"
         "set: {odometry.positionNoise: 0.001}\nsamples: 3\nseed: 5\nduration: 0.5\n"
     )
-    assert ran("sweep", "s.yaml", "--out", "out", "--no-plots").returncode == 0
-    told = json.loads(Path("out/sweep.json").read_text())["worst"][0]
-    words = shlex.split(told["again"])
-    assert ran(*words[1:], "--log", "log.csv", "--quiet").returncode == 0
+    assert run_command("sweep", "s.yaml", "--out", "out", "--no-plots").returncode == 0
+    worst = json.loads(Path("out/sweep.json").read_text())["worst"][0]
+    words = shlex.split(worst["again"])
+    assert run_command(*words[1:], "--log", "log.csv", "--quiet").returncode == 0
     log = qc.Log.of_file("log.csv")
     away = np.linalg.norm([log.topics["error"][axis] for axis in "xyz"], axis=0)
-    row = rows("out")[told["row"]]
+    row = rows("out")[worst["row"]]
     assert float(row["max_position"]) == away.max()
-    assert float(row["rms_position"]) == told["rms_position"]
+    assert float(row["rms_position"]) == worst["rms_position"]
 
 
 def test_the_page_tells_what_was_flown(in_empty_folder):
     vary = ["--vary", "frame.mass=uniform:0.9:1.1", "--vary", "frame.ixx=0.01,0.02"]
-    done = ran("sweep", *FLY, "--duration=0.5", *vary, "--samples=4", "--out=out", "--parquet")
+    done = run_command(
+        "sweep", *FLY, "--duration=0.5", *vary, "--samples=4", "--out=out", "--parquet"
+    )
     assert done.returncode == 0, done.stderr
     page = Path("out/report.html").read_text()
     for part in ("8 rows: 8 flown, 0 failed", "frame.mass", "quadcore run quadrotor", "data:image"):
@@ -220,7 +222,7 @@ def test_parquet_holds_what_the_csv_holds(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "worst"),
     [
         (["--reference", "circle"], "no controller is given. Add --controller or --commands."),
         ([*SHORT, "--vary", "a.b=uniform:1:2"], "vary a.b: a distribution requires a number of"),
@@ -238,10 +240,10 @@ def test_parquet_holds_what_the_csv_holds(tmp_path):
         (["nowhere.yaml"], "nowhere.yaml: cannot be read"),
     ],
 )  # fmt: skip
-def test_wrong_sweeps_are_refused_in_one_line(words, told, in_empty_folder, capsys):
+def test_wrong_sweeps_are_refused_in_one_line(words, worst, in_empty_folder, capsys):
     assert main(["sweep", *words]) == 2
     error = capsys.readouterr().err
-    assert told in error and error.startswith("error: ") and error.count("\n") == 1
+    assert worst in error and error.startswith("error: ") and error.count("\n") == 1
     assert not Path("out/sweep/table.csv").exists()
 
 
@@ -263,7 +265,9 @@ def test_the_description_in_the_docs_flies(in_empty_folder):
     page = Path(__file__).resolve().parents[2] / "docs" / "sweep.md"
     text = page.read_text().split("```yaml\n")[1].split("```")[0]
     Path("mass.yaml").write_text(text)
-    done = ran("sweep", "mass.yaml", "--samples=3", "--duration=0.1", "--no-plots", "--out=out")
+    done = run_command(
+        "sweep", "mass.yaml", "--samples=3", "--duration=0.1", "--no-plots", "--out=out"
+    )
     assert done.returncode == 0, done.stderr
     assert len(rows("out")) == 2 * 2 * 3
 
@@ -281,7 +285,7 @@ def test_pandas_reads_what_is_written(tmp_path):
         assert frame["row"].tolist() == [0, 1, 2, 3]
 
 
-def test_one_sample_set_serves_every_law():
+def test_one_sample_set_serves_every_controller():
     found = qc.sweep(["pd", "geometric"], "hover", MASS, samples=3, duration=0.1)
     masses = found.columns["frame.mass"]
     assert masses[:3].tolist() == masses[3:].tolist()

@@ -13,7 +13,7 @@ from quadcore.cli import main
 
 
 def test_texts_numbers_and_files_reach_a_plugin_from_the_urdf_and_from_outside(relays, toy):
-    def said(tags, **options):
+    def read_message(tags, **options):
         simulation = relays(element("one", publishes="push", **tags), **options)
         simulation.step()
         return simulation.topic("push")["a"], simulation.topic("push")["b"]
@@ -21,13 +21,13 @@ def test_texts_numbers_and_files_reach_a_plugin_from_the_urdf_and_from_outside(r
     folder = toy / "tables"
     folder.mkdir()
     (folder / "one.txt").write_text("10 20\n")
-    assert said({}) == (0, 0)
-    assert said({"own": "1 2", "table": "tables/one.txt"}) == (11, 22)
+    assert read_message({}) == (0, 0)
+    assert read_message({"own": "1 2", "table": "tables/one.txt"}) == (11, 22)
     for own in ("3 4", [3, 4], np.array([3.0, 4.0])):
-        assert said({"own": "1 2"}, parameters={"one.own": own}) == (3, 4)
-    assert said({}, parameters={"one.table": folder / "one.txt"}) == (10, 20)
-    assert said({}, parameters={"one.table": "tables/one.txt"}) == (10, 20)
-    assert said({}, parameters={"one.publishes": "push"}) == (0, 0)
+        assert read_message({"own": "1 2"}, parameters={"one.own": own}) == (3, 4)
+    assert read_message({}, parameters={"one.table": folder / "one.txt"}) == (10, 20)
+    assert read_message({}, parameters={"one.table": "tables/one.txt"}) == (10, 20)
+    assert read_message({}, parameters={"one.publishes": "push"}) == (0, 0)
 
 
 def test_a_file_counts_from_the_document_that_holds_its_tag(relays, toy):
@@ -67,12 +67,12 @@ def test_a_fingerprint_holds_a_file_by_its_text_and_numbers_by_their_values(rela
     (toy / "one.txt").write_text("1 2")
     tags = {"publishes": "push", "table": "one.txt"}
 
-    def taken(**more):
+    def read_tags(**more):
         simulation = relays(element("one", **tags, **more))
         simulation.step()
         return simulation.snapshot()
 
-    snapshot = taken(own="1 2")
+    snapshot = read_tags(own="1 2")
     relays(element("one", **tags, own="1.0 2e0")).restore(snapshot)
     moved = toy / "moved"
     moved.mkdir()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from flights import ENGINES
-from hooked import CHAPTER2, G, assert_same_bytes, fly, motored, with_plugins
+from hooked import CHAPTER2, G, assert_same_bytes, fly, make_motored, with_plugins
 from scipy.spatial.transform import Rotation
 from vehicles import ODD, SKEW, plugin, start, vehicle
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("hook_plugins")
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_sensor_is_told_its_time_and_a_force_law_that_of_the_stage(engine, hangar):
+def test_a_sensor_has_its_time_and_a_force_law_that_of_the_stage(engine, hangar):
     urdf = with_plugins(vehicle((), mass=2), plugin("probe", {"cube": 3}))
     simulation = hangar(urdf, gravity=(0, 0, -1.5), engine=engine, dt=0.01)
     start(simulation, time=0.2)
@@ -31,17 +31,17 @@ def test_a_sensor_is_told_its_time_and_a_force_law_that_of_the_stage(engine, han
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_wind_by_plugin_is_the_worlds_bit_for_bit(engine, hangar):
     wind = {"x": 3.1, "y": -1.7, "z": 0.43}
-    urdf = motored()
-    told = plugin("probe", {})
+    urdf = make_motored()
+    probe = plugin("probe", {})
     by_world = hangar(
-        with_plugins(urdf, told),
+        with_plugins(urdf, probe),
         G,
         tuple(wind.values()),
         spawn=(0, 0, 5, 0.3, -0.2, 1),
         engine=engine,
     )
     by_plugin = hangar(
-        with_plugins(urdf, plugin("gust", wind), told),
+        with_plugins(urdf, plugin("gust", wind), probe),
         G,
         spawn=(0, 0, 5, 0.3, -0.2, 1),
         engine=engine,
@@ -59,7 +59,7 @@ def test_a_wind_by_plugin_is_the_worlds_bit_for_bit(engine, hangar):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_winds_of_world_and_plugins_add_up(engine, hangar):
-    urdf = motored()
+    urdf = make_motored()
     halves = [plugin("gust", {"x": 1.5, "z": -0.25}).replace('"gust"', f'"{n}"') for n in "ab"]
     together = fly(hangar(with_plugins(urdf, *halves), G, (2, 3, 1), engine=engine), 300)
     assert_same_bytes(together, fly(hangar(urdf, G, (5, 3, 0.5), engine=engine), 300))

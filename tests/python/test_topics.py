@@ -73,7 +73,7 @@ def test_a_message_that_cannot_be_is_refused_and_changes_nothing(topic, values, 
     assert simulation.topic("vel_cmd")["count"] == 0
 
 
-def test_a_caller_who_publishes_what_a_plugin_writes_is_told_of_it(relays):
+def test_publishing_on_the_topic_of_a_plugin_is_reported(relays):
     simulation = relays(element("out", publishes="push"))
     assert refusal(simulation.publish, "push", [1, 2]) == (
         f"publish() writes topic 'push', which toy.urdf:{FIRST}: plugin 'out' already writes. "
@@ -201,53 +201,55 @@ def test_a_restored_flight_has_its_topics_back(relays, engine):
 
 
 @pytest.fixture(scope="module")
-def logged():
+def log_topics():
     return quadrotor().run(0.1, MANOEUVRE, log_every=10, topics=["odom", "vel_cmd"])
 
 
-def test_a_log_keeps_what_a_topic_said(logged):
+def test_a_log_keeps_what_a_topic_said(log_topics):
     simulation = quadrotor()
-    assert list(logged.topics) == ["odom", "vel_cmd"]
-    assert list(logged.topics["odom"]) == ["stamp", *ODOM]
-    for row in range(len(logged)):
+    assert list(log_topics.topics) == ["odom", "vel_cmd"]
+    assert list(log_topics.topics["odom"]) == ["stamp", *ODOM]
+    for row in range(len(log_topics)):
         message = simulation.topic("odom")
-        for field, values in logged.topics["odom"].items():
+        for field, values in log_topics.topics["odom"].items():
             assert values[row] == message[field]
         simulation.run(0.01, MANOEUVRE)
-    first = logged.topics["vel_cmd"]
+    first = log_topics.topics["vel_cmd"]
     assert np.isnan([values[0] for values in first.values()]).all()
     assert first["w2"][-1] == -475 and first["stamp"][-1] == 0.099
-    assert np.array_equal(logged.table, quadrotor().run(0.1, MANOEUVRE, log_every=10).table)
+    assert np.array_equal(log_topics.table, quadrotor().run(0.1, MANOEUVRE, log_every=10).table)
 
 
-def test_csv_and_mat_hold_the_topics_behind_the_state(logged, tmp_path):
-    logged.to_csv(tmp_path / "log.csv")
+def test_csv_and_mat_hold_the_topics_behind_the_state(log_topics, tmp_path):
+    log_topics.to_csv(tmp_path / "log.csv")
     head, *rows = (tmp_path / "log.csv").read_text().splitlines()
     names = [f"odom.{f}" for f in ("stamp", *ODOM)] + [
         f"vel_cmd.{f}" for f in ("stamp", "w1", "w2", "w3", "w4")
     ]
-    assert head.split(",") == [*logged.columns, *names]
+    assert head.split(",") == [*log_topics.columns, *names]
     read = np.genfromtxt(rows, delimiter=",")
-    assert np.array_equal(read[:, : len(logged.columns)], logged.table)
-    assert np.array_equal(read[:, head.split(",").index("odom.vz")], logged.topics["odom"]["vz"])
-    logged.to_mat(tmp_path / "log.mat")
+    assert np.array_equal(read[:, : len(log_topics.columns)], log_topics.table)
+    assert np.array_equal(
+        read[:, head.split(",").index("odom.vz")], log_topics.topics["odom"]["vz"]
+    )
+    log_topics.to_mat(tmp_path / "log.mat")
     variables = scipy.io.loadmat(tmp_path / "log.mat", simplify_cells=True)
-    for field, values in logged.topics["odom"].items():
+    for field, values in log_topics.topics["odom"].items():
         assert np.array_equal(variables["topic_odom"][field], values)
-    assert np.array_equal(variables["z"], logged.position[:, 2])
+    assert np.array_equal(variables["z"], log_topics.position[:, 2])
 
 
-def test_the_command_line_logs_topics_as_python_does(logged, tmp_path, monkeypatch, capsys):
+def test_the_command_line_logs_topics_as_python_does(log_topics, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     np.savetxt("fly.csv", MANOEUVRE, delimiter=",", header="t,w1,w2,w3,w4", comments="")
     options = ["--duration", "0.1", "--commands", "fly.csv", "--log-every", "10", "--quiet"]
     topics = ["--log-topics", "odom,vel_cmd"]
     logs = ["--log", "log.csv", "--log", "log.mat", "--out", "out"]
     assert main(["run", "quadrotor", *options, *topics, *logs]) == 0
-    logged.to_csv("python.csv")
+    log_topics.to_csv("python.csv")
     assert Path("log.csv").read_bytes() == Path("python.csv").read_bytes()
     variables = scipy.io.loadmat("log.mat", simplify_cells=True)
-    assert np.array_equal(variables["topic_odom"]["z"], logged.topics["odom"]["z"])
+    assert np.array_equal(variables["topic_odom"]["z"], log_topics.topics["odom"]["z"])
     assert main(["run", "quadrotor", *options, "--log-topics", "odo"]) == 2
     assert "topic 'odo' does not exist. Did you mean 'odom'?" in (capsys.readouterr().err)
 

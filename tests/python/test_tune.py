@@ -22,17 +22,17 @@ FLIGHT = ["--duration", "4", "--xacro", "sim_slow:=1", "--quiet"]
 
 def tenth(name="pd"):
     """A law whose gains are a tenth of those it has by itself."""
-    (table,) = (specs for law, _, specs in qc._core.controllers() if law == name)
+    (table,) = (specs for controller, _, specs in qc._core.controllers() if controller == name)
     numbers = {s.name: float(s.default) / 10 for s in table if s.name[:3] in ("kp_", "kd_")}
     assert len(numbers) == 8
     return getattr(qc.controllers, name)(**numbers)
 
 
-def largest(law, reference):
+def largest(controller, reference):
     """Largest distance from a reference over 6 s, m."""
     sim = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
     sim.set_state(qc.references.start(sim, reference))
-    log = sim.run(6.0, controller=law, reference=reference, log_every=10)
+    log = sim.run(6.0, controller=controller, reference=reference, log_every=10)
     wanted = np.array([reference(t).position for t in log.time])
     return np.linalg.norm(log.position - wanted, axis=1).max()
 
@@ -43,9 +43,9 @@ def found():
 
 
 def test_gains_ten_times_too_small_become_gains_that_fly_what_was_held_out(found):
-    law = found.gains.make()
+    controller = found.gains.make()
     for reference in (qc.references.circle(), qc.references.eight()):
-        assert largest(law, reference) < 0.5 * largest(tenth(), reference)
+        assert largest(controller, reference) < 0.5 * largest(tenth(), reference)
     assert set(found.held_out) == {"circle", "eight"}
     assert found.error < 0.7 * found.start
 
@@ -119,9 +119,9 @@ def test_other_models_judge_too(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"law": "pidd"}, "controller 'pidd' does not exist"),
-        ({"law": "controllers:Mine"}, "controllers"),
-        ({"law": "pd:spins=1"}, "controller 'pd' has no parameter 'spins'"),
+        ({"controller": "pidd"}, "controller 'pidd' does not exist"),
+        ({"controller": "controllers:Mine"}, "controllers"),
+        ({"controller": "pd:spins=1"}, "controller 'pd' has no parameter 'spins'"),
         ({"only": ["kp_xz"]}, "controller 'pd' has no parameter 'kp_xz'. Use some of scale, kp_xy"),
         ({"only": ["ki_xy"]}, "ki_xy is 0. Start with more than 0."),
         ({"only": ["drag"]}, "no parameter 'drag'"),
@@ -149,12 +149,12 @@ def test_other_models_judge_too(tmp_path):
         ({"commands": 3}, "option 'commands' does not exist"),
     ],
 )
-def test_what_cannot_be_tuned_is_told_before_anything_flies(arguments, message):
+def test_what_cannot_be_tuned_is_refused_before_any_flight(arguments, message):
     with pytest.raises(qc.InputError, match=message):
-        qc.tune(**{"law": "pd", "budget": 1, **SHORT, **arguments})
+        qc.tune(**{"controller": "pd", "budget": 1, **SHORT, **arguments})
 
 
-def test_without_the_optimiser_it_is_told_what_to_install(monkeypatch):
+def test_without_the_optimiser_the_package_to_install_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "cma", None)
     with pytest.raises(qc.InputError, match=r"pip install 'quadcore\[tune\]'"):
         qc.tune("pd", budget=1, **SHORT)

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from flights import ENGINES
-from hooked import G, assert_same_bytes, fly, motored, with_plugins
+from hooked import G, assert_same_bytes, fly, make_motored, with_plugins
 from scipy.signal import welch
 from vehicles import plugin, start, vehicle
 
@@ -20,7 +20,7 @@ AIRSPEED = 5.0
 RATE = 50  # samples per second: at a tenth of it the folded spectrum is still near the true one
 
 
-def windy(urdf, **tags):
+def add_wind(urdf, **tags):
     return with_plugins(urdf, plugin("wind", tags))
 
 
@@ -40,7 +40,7 @@ def turbulence(tmp_path_factory):
     """What 20 flights of 1000 s at rest felt: (seed, time, u v w)."""
     from vehicles import Hangar
 
-    urdf = windy(vehicle(()), turbulence=MODERATE, height=10, airspeed=AIRSPEED)
+    urdf = add_wind(vehicle(()), turbulence=MODERATE, height=10, airspeed=AIRSPEED)
     simulation = Hangar(tmp_path_factory.mktemp("wind"))(urdf, engine="eigen", dt=1 / RATE)
     rows = []
     for seed in range(20):
@@ -83,7 +83,7 @@ def test_components_of_the_turbulence_have_nothing_to_do_with_each_other(turbule
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_turbulence_is_a_matter_of_the_seed_and_survives_a_snapshot(engine, hangar):
-    urdf = windy(motored(), velocity="4 -3 0", turbulence=MODERATE)
+    urdf = add_wind(make_motored(), velocity="4 -3 0", turbulence=MODERATE)
     simulation = hangar(urdf, G, engine=engine, seed=3)
     fly(simulation, 100)
     middle = simulation.snapshot()
@@ -99,7 +99,7 @@ def test_turbulence_is_a_matter_of_the_seed_and_survives_a_snapshot(engine, hang
 
 
 def test_every_engine_meets_the_same_turbulence(hangar):
-    urdf = windy(motored(), velocity="4 -3 0", turbulence=MODERATE)
+    urdf = add_wind(make_motored(), velocity="4 -3 0", turbulence=MODERATE)
     rows = []
     for engine in ENGINES:
         simulation = hangar(urdf, G, engine=engine, seed=3)
@@ -111,7 +111,7 @@ def test_every_engine_meets_the_same_turbulence(hangar):
 def test_u_blows_along_the_relative_wind_at_its_speed(hangar):
     # In a wind from the north-east at 2 m/s that meets the vehicle at 10, w of a length of 10 m
     # forgets within about a second.
-    urdf = windy(vehicle(()), velocity="3 4 0", turbulence=MODERATE, airspeed=0.1)
+    urdf = add_wind(vehicle(()), velocity="3 4 0", turbulence=MODERATE, airspeed=0.1)
     simulation = hangar(urdf, engine="eigen", dt=0.01)
 
     def ratio(velocity):

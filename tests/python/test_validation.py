@@ -22,7 +22,7 @@ FAST = ["--drag", "none", "--sim-slow", "1", "--engine", "eigen", "--duration", 
 
 
 @pytest.fixture(scope="module")
-def distances(study):
+def list_distances(study):
     """Largest distance from the model by engine, sim_slow and drag."""
     assert not any(row.failure for row in study.rows)
     return {row.case[:3]: row.difference.max["distance"] for row in study.rows}
@@ -38,17 +38,17 @@ def test_every_flight_ascends_and_moves_in_all_axes_without_a_steep_angle(study)
         assert row.steepest < np.radians(60)
 
 
-def test_slowing_down_seems_to_cure_gazebo(distances):
-    assert distances["gazebo11", 1, "all"] > 10
-    assert distances["gazebo11", 8, "all"] < distances["gazebo11", 1, "all"] / 10
-    assert distances["gazebo11", 8, "none"] < distances["gazebo11", 1, "none"] / 10
+def test_slowing_down_seems_to_cure_gazebo(list_distances):
+    assert list_distances["gazebo11", 1, "all"] > 10
+    assert list_distances["gazebo11", 8, "all"] < list_distances["gazebo11", 1, "all"] / 10
+    assert list_distances["gazebo11", 8, "none"] < list_distances["gazebo11", 1, "none"] / 10
 
 
-def test_engines_without_the_fault_need_no_slowing_down(distances):
+def test_engines_without_the_fault_need_no_slowing_down(list_distances):
     for engine in ("ode", "eigen"):
         for drag in ("none", "all"):
-            assert distances[engine, 1, drag] < distances[engine, 8, drag]
-            assert distances[engine, 1, drag] < distances["gazebo11", 1, drag] / 10
+            assert list_distances[engine, 1, drag] < list_distances[engine, 8, drag]
+            assert list_distances[engine, 1, drag] < list_distances["gazebo11", 1, drag] / 10
 
 
 def test_a_chain_leads_from_the_plant_to_the_model_and_adds_up(study):
@@ -129,18 +129,18 @@ def test_an_ascent_lifts_a_hexarotor_with_odd_rotors():
 
 
 def test_a_vehicle_that_the_input_cannot_lift_tilt_or_turn_is_refused_with_the_reason(hangar):
-    def refused(rotors, **air):
+    def refuse(rotors, **air):
         air = {**AIR, **DRAG, **air}
         urdf = vehicle(rotors, air=air, motor=MOTOR)
         with pytest.raises(qc.InputError) as refusal:
             make_ascent(Vehicle.of(hangar(urdf, (0, 0, -9.8), engine="eigen")))
         return str(refusal.value)
 
-    assert "give this vehicle no lift without another force" in refused(CROSS[:2])
+    assert "give this vehicle no lift without another force" in refuse(CROSS[:2])
     # Lifts and tilts, but nothing turns it about the vertical.
-    assert "give this vehicle no torque about z without" in refused(CROSS, rotorTorqueCoeff=0)
+    assert "give this vehicle no torque about z without" in refuse(CROSS, rotorTorqueCoeff=0)
     # Turns, but a hundred times less than the built-in flight asks.
-    weak = refused(CROSS, rotorTorqueCoeff=AIR["rotorTorqueCoeff"] / 100)
+    weak = refuse(CROSS, rotorTorqueCoeff=AIR["rotorTorqueCoeff"] / 100)
     assert "cannot lift this vehicle and turn it about z as fast as" in weak
 
 

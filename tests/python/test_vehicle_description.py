@@ -23,34 +23,34 @@ pytestmark = pytest.mark.usefixtures("hook_plugins")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("drag_model", ["chapter2", "appendix"])
 @pytest.mark.parametrize("reaction", ["thesis", "opposing"])
-def test_a_plugin_is_told_what_it_flies(engine, drag_model, reaction, hangar):
+def test_a_plugin_reads_the_description_of_its_vehicle(engine, drag_model, reaction, hangar):
     air = {**CHAPTER2, "dragModel": drag_model, "reactionTorque": reaction, "sim_slow": 2}
     urdf = vehicle(ODD, inertia=SKEW, com=(0.01, -0.02, 0.03), air=air)
     urdf = with_plugins(urdf, plugin("cargo", CARGO))
     place = {"wind": (1, 2, 3), "spawn": (0, 0, 1, 0.5, 0.4, 0.3), "engine": engine}
     simulation = hangar(with_plugins(urdf, plugin("probe", {})), G, **place)
-    told = simulation.topic("vehicle")
-    assert told["mass"] == pytest.approx(simulation.mass, rel=1e-15)
-    c = [told[name] for name in ("cx", "cy", "cz")]
+    description = simulation.topic("vehicle")
+    assert description["mass"] == pytest.approx(simulation.mass, rel=1e-15)
+    c = [description[name] for name in ("cx", "cy", "cz")]
     assert np.allclose(c, simulation.center_of_mass, rtol=0, atol=1e-16)
-    assert told["g"] == -9.8
+    assert description["g"] == -9.8
     k, b = (4 * LIFT[tag] for tag in ("rotorThrustCoeff", "rotorTorqueCoeff"))
     for i, rotor in enumerate(ODD, 1):
         axis = Rotation.from_euler("xyz", rotor.rpy).apply([0, 0, 1])
-        assert told[f"m{i}"] == pytest.approx(rotor.inertia[2], rel=1e-5)
+        assert description[f"m{i}"] == pytest.approx(rotor.inertia[2], rel=1e-5)
         for name, expected in (("p", rotor.xyz), ("o", rotor.xyz), ("a", axis)):
             assert np.allclose(
-                [told[name + x + str(i)] for x in "xyz"], expected, rtol=0, atol=1e-5
+                [description[name + x + str(i)] for x in "xyz"], expected, rtol=0, atol=1e-5
             )
         for sense, sign in (("p", 1), ("n", -1)):
             force = k * axis
             about = np.array([0, 0, 1]) if drag_model == "appendix" else axis
             torque = np.cross(np.array(rotor.xyz) - c, force)
             torque = torque + (1 if reaction == "thesis" else -1) * sign * b * about
-            wrench = [told[n + x + sense + str(i)] for n in "ft" for x in "xyz"]
+            wrench = [description[n + x + sense + str(i)] for n in "ft" for x in "xyz"]
             assert np.allclose(wrench, [*force, *torque], rtol=0, atol=1e-5 * k)
-    untold = hangar(urdf, G, **place)
-    assert_same_bytes(simulation.run(0.1), untold.run(0.1), "cube")  # nothing of it was flown
+    without = hangar(urdf, G, **place)
+    assert_same_bytes(simulation.run(0.1), without.run(0.1), "cube")  # nothing of it was flown
 
 
 @pytest.mark.parametrize("engine", ENGINES)

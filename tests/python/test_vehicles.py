@@ -14,12 +14,12 @@ from quadcore.control import references
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZES = {"quadrotor": 1.0, "hexarotor": 1.0, "crazyflie": 0.25}
-LAWS = ("geometric", "indi", "lqr")
+CONTROLLERS = ("geometric", "indi", "lqr")
 
 
-def max_error(simulation, reference, law, duration, since=0.0):
+def max_error(simulation, reference, controller, duration, since=0.0):
     simulation.set_state(references.start(simulation, reference))
-    log = simulation.run(duration, controller=law, reference=reference, log_every=10)
+    log = simulation.run(duration, controller=controller, reference=reference, log_every=10)
     wanted = np.array([reference(t).position for t in log.time])
     return np.linalg.norm(log.position - wanted, axis=1)[log.time > since].max()
 
@@ -41,9 +41,9 @@ def test_shipped_vehicles_fly_with_their_gains(model, engine):
         assert max_error(simulation, reference, "geometric", 8, since=5) < 0.05, reference
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("controller", CONTROLLERS)
 @pytest.mark.parametrize("model", SIZES)
-def test_shipped_vehicles_fly_every_reference(model, law):
+def test_shipped_vehicles_fly_every_reference(model, controller):
     size = SIZES[model]
     rows = references.waypoints(ROOT / "config" / "waypoints.yaml").rows * [1, size, size, size]
     moving = [
@@ -54,10 +54,10 @@ def test_shipped_vehicles_fly_every_reference(model, law):
     ]
     for reference in moving:
         simulation = qc.Simulation(model, engine="eigen")
-        assert max_error(simulation, reference, law, 4) < 0.05, reference
+        assert max_error(simulation, reference, controller, 4) < 0.05, reference
     for reference in (references.step(dx=size), references.ramp(vx=size)):
         simulation = qc.Simulation(model, engine="eigen")
-        assert max_error(simulation, reference, law, 10, since=8) < 0.05, reference
+        assert max_error(simulation, reference, controller, 10, since=8) < 0.05, reference
 
 
 def test_the_crazyflie_is_as_it_was_measured():

@@ -88,8 +88,10 @@ def test_an_argument_that_makes_other_rotors_makes_no_batch(tmp_path):
     path.write_text(TWO_OR_FOUR.format(_inside(four), _inside(two)))
     own = {"xacro.many": np.array([True, True, False])}
     rotors = Simulation(path).rotor_count
-    told = f"set xacro.many: vehicle 2 has 2 rotors, but vehicle 0 has {rotors}. Make a separate"
-    with pytest.raises(InputError, match=told):
+    expected = (
+        f"set xacro.many: vehicle 2 has 2 rotors, but vehicle 0 has {rotors}. Make a separate"
+    )
+    with pytest.raises(InputError, match=expected):
         BatchSimulation(path, 3, parameters=own)
 
 
@@ -110,7 +112,7 @@ def test_an_array_without_length_is_a_number():
 
 
 @pytest.mark.parametrize(
-    ("parameters", "told"),
+    ("parameters", "expected"),
     [
         ({TAG: [1e-5, 2e-5]}, "For a value per vehicle, give an array of shape (2,)."),
         ({TAG: (1e-5, 2e-5)}, "For a value per vehicle, give an array of shape (2,)."),
@@ -127,13 +129,13 @@ def test_an_array_without_length_is_a_number():
         ({TAG: np.full((2, 2), 1e-5)}, "For a value per vehicle, give an array of shape (2,)."),
     ],
 )
-def test_values_that_are_not_one_for_each_vehicle_are_refused(parameters, told):
-    with pytest.raises(InputError, match=re.escape(told)) as refusal:
+def test_values_that_are_not_one_for_each_vehicle_are_refused(parameters, expected):
+    with pytest.raises(InputError, match=re.escape(expected)) as refusal:
         BatchSimulation(n=2, parameters=parameters)
     assert "\n" not in str(refusal.value)
     arguments = {key[6:]: value for key, value in parameters.items() if key.startswith("xacro.")}
     if arguments:
-        with pytest.raises(InputError, match=re.escape(told)):
+        with pytest.raises(InputError, match=re.escape(expected)):
             BatchSimulation(n=2, xacro_args=arguments)
 
 

@@ -19,7 +19,7 @@ UPSIDE_DOWN = (0, 0, 1000, np.pi, 0, 0)
 DRIVES = "a propeller tilts beyond 90 degrees, where the parasitic drag of <dragModel> appendix"
 
 
-def told(call):
+def collect_warnings(call):
     """Messages of the warnings that a call raises."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -45,31 +45,31 @@ def test_an_inverted_vehicle_is_driven_by_the_appendix_drag_to_a_singularity(eng
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_drag_that_drives_is_told_once_in_a_flight(hangar, engine):
+def test_drag_that_drives_produces_one_warning_a_flight(hangar, engine):
     air = {**AIR, **DRAG}
     simulation = start(hangar(vehicle(air=air), engine=engine), angular_velocity=[0, 10, 0])
     at_load = simulation.warnings
-    assert told(lambda: simulation.step(140)) == []  # 80 degrees
-    fresh = told(lambda: simulation.run(0.1))
+    assert collect_warnings(lambda: simulation.step(140)) == []  # 80 degrees
+    fresh = collect_warnings(lambda: simulation.run(0.1))
     assert len(fresh) == 1
     assert fresh[0].startswith("t = 0.15") and DRIVES in fresh[0]
     assert simulation.warnings == [*at_load, *fresh]
-    assert told(lambda: simulation.run(1)) == []  # upright and over again
+    assert collect_warnings(lambda: simulation.run(1)) == []  # upright and over again
 
 
 def test_the_warnings_of_a_flight_belong_to_its_state(hangar):
     simulation = start(hangar(vehicle(air={**AIR, **DRAG})), angular_velocity=[0, 10, 0])
     upright = simulation.snapshot()
-    first = told(lambda: simulation.step(200))
+    first = collect_warnings(lambda: simulation.step(200))
     assert len(first) == 1 == len(simulation.warnings)
     tipped = simulation.snapshot()
     simulation.restore(upright)
     assert simulation.warnings == []
-    assert told(lambda: [simulation.step() for _ in range(200)]) == first
+    assert collect_warnings(lambda: [simulation.step() for _ in range(200)]) == first
     other = hangar(vehicle(air={**AIR, **DRAG}))
-    assert told(lambda: simulation.restore(tipped)) == []
+    assert collect_warnings(lambda: simulation.restore(tipped)) == []
     assert simulation.warnings == first
-    assert told(lambda: simulation.step(500)) == []
+    assert collect_warnings(lambda: simulation.step(500)) == []
     simulation.reset()
     assert simulation.warnings == [] == other.warnings
 
@@ -77,10 +77,10 @@ def test_the_warnings_of_a_flight_belong_to_its_state(hangar):
 @pytest.mark.parametrize(
     "changed", [{"parasiticDragCoeff": 0}, {"dragModel": "chapter2"}], ids=["none", "chapter2"]
 )
-def test_drag_that_slows_is_not_told(hangar, changed):
+def test_drag_that_slows_produces_no_warning(hangar, changed):
     simulation = hangar(vehicle(air={**AIR, **DRAG, **changed}))
     start(simulation, angular_velocity=[0, 10, 0])
-    assert told(lambda: simulation.run(1)) == []
+    assert collect_warnings(lambda: simulation.run(1)) == []
 
 
 def test_a_warning_made_an_error_ends_the_call_after_its_step(hangar):
@@ -104,26 +104,26 @@ def test_the_command_line_prints_what_a_flight_is_warned_of(tmp_path, capsys):
     assert lines[0].startswith("warning: t = 0.000000 s: plugin 'drone_plugin': a propeller tilts")
 
 
-def test_a_vehicle_without_any_drag_tag_is_told_what_the_thesis_had_compiled_in(hangar):
-    [message] = told(lambda: hangar(vehicle(air=LIFT)))
+def test_the_warning_about_a_vehicle_without_drag_tags_names_the_values_of_the_thesis(hangar):
+    [message] = collect_warnings(lambda: hangar(vehicle(air=LIFT)))
     assert "plugin 'aerodynamic': no drag is set" in message
     for tag, value in DRAG.items():
         assert f"<{tag}>{value}" in message
         one = vehicle(air={**LIFT, tag: 0})
-        assert told(functools.partial(hangar, one)) == []
+        assert collect_warnings(functools.partial(hangar, one)) == []
     parameters = {"aerodynamic.inducedDragCoeff": 0}
-    assert told(lambda: hangar(vehicle(air=LIFT), parameters=parameters)) == []
+    assert collect_warnings(lambda: hangar(vehicle(air=LIFT), parameters=parameters)) == []
 
 
 @pytest.mark.parametrize(
     ("model", "harm"),
     [("appendix", "its reaction torque has the wrong sign"), ("chapter2", "its thrust points")],
 )
-def test_an_axis_against_the_lift_is_told(hangar, model, harm):
+def test_an_axis_against_the_lift_is_reported(hangar, model, harm):
     urdf = vehicle(air={**AIR, **DRAG, "dragModel": model}).splitlines()
     line = next(i for i, text in enumerate(urdf) if 'joint name="rotor2"' in text)
     urdf[line] = urdf[line].replace('axis xyz="0 0 1"', 'axis xyz="0.1 0 -1"')
-    [message] = told(lambda: hangar("\n".join(urdf)))
+    [message] = collect_warnings(lambda: hangar("\n".join(urdf)))
     assert "joint 'rotor2' (" in message and f".urdf:{line + 1})" in message
     assert "opposite to the z of link 'propeller2'" in message and harm in message
     assert "Point the axis along the thrust" in message
@@ -131,12 +131,14 @@ def test_an_axis_against_the_lift_is_told(hangar, model, harm):
 
 def stiff(call):
     """Messages of motors that are too stiff for the step."""
-    return [message for message in told(call) if "<kp> is too large for the step" in message]
+    return [
+        message for message in collect_warnings(call) if "<kp> is too large for the step" in message
+    ]
 
 
 @pytest.mark.parametrize("dt", [1e-3, 5e-4])
 @pytest.mark.parametrize(("engine", "bound"), [("gazebo11", 2), ("ode", 2), ("eigen", 2.785)])
-def test_a_motor_too_stiff_for_the_step_is_told_and_is(hangar, engine, bound, dt):
+def test_a_motor_too_stiff_for_the_step_is_reported(hangar, engine, bound, dt):
     """A heavy frame, so that each rotor stands alone."""
 
     def error_grows(factor):

@@ -8,17 +8,17 @@ import math
 import numpy as np
 import pytest
 from flights import ENGINES
-from hooked import CHAPTER2, G, assert_same_bytes, fly, motored, with_plugins
+from hooked import CHAPTER2, G, assert_same_bytes, fly, make_motored, with_plugins
 from vehicles import AIR, DRAG, MOTOR, ODD, SKEW, plugin, start, text, vehicle, wrenches
 
 import quadcore as qc
 
 
-def windy(urdf, **tags):
+def add_wind(urdf, **tags):
     return with_plugins(urdf, plugin("wind", tags))
 
 
-def felt(simulation):
+def measure_wind(simulation):
     """Velocity of the air where the vehicle is."""
     wind = simulation.topic("wind")
     return np.array([wind[axis] for axis in "xyz"])
@@ -28,11 +28,11 @@ def felt(simulation):
 def test_a_constant_wind_is_the_worlds_bit_for_bit(engine, hangar):
     wind = (3.1, -1.7, 0.43)
     options = {"spawn": (0, 0, 5, 0.3, -0.2, 1), "engine": engine}
-    by_world = hangar(motored(), G, wind, **options)
-    by_plugin = hangar(windy(motored(), velocity=text(wind)), G, **options)
+    by_world = hangar(make_motored(), G, wind, **options)
+    by_plugin = hangar(add_wind(make_motored(), velocity=text(wind)), G, **options)
     assert_same_bytes(fly(by_world, 1000), fly(by_plugin, 1000))
-    assert felt(by_plugin).tolist() == list(wind)
-    still = fly(hangar(motored(), G, **options), 1000)
+    assert measure_wind(by_plugin).tolist() == list(wind)
+    still = fly(hangar(make_motored(), G, **options), 1000)
     assert np.abs(still.position[-1] - by_world.state.position).max() > 0.01
 
 
@@ -42,7 +42,7 @@ def test_a_gust_keeps_the_fourth_order_of_eigen(hangar):
     urdf = vehicle(ODD, mass=0.3, inertia=SKEW, com=(0.01, -0.02, 0.03), air=air)
 
     def end(dt, **tags):
-        simulation = hangar(windy(urdf, **tags), G, engine="eigen", dt=dt)
+        simulation = hangar(add_wind(urdf, **tags), G, engine="eigen", dt=dt)
         simulation.step(round(0.384 / dt))
         return simulation.state.position.copy()
 
@@ -56,7 +56,7 @@ def test_a_gust_keeps_the_fourth_order_of_eigen(hangar):
 def test_gusts_add_to_the_mean_wind_within_their_time(hangar):
     gusts = ((4, -2, 1, 0.1, 0.3), (0, 5, 0, 0.25, 0.2))
     simulation = hangar(
-        windy(vehicle(()), velocity="1 2 3", gusts=" ".join(map(text, gusts))), engine="eigen"
+        add_wind(vehicle(()), velocity="1 2 3", gusts=" ".join(map(text, gusts))), engine="eigen"
     )
     for _ in range(500):
         simulation.step()
@@ -65,7 +65,7 @@ def test_gusts_add_to_the_mean_wind_within_their_time(hangar):
             t = simulation.time - begin
             if 0 < t < duration:
                 expected += np.array(V) / 2 * (1 - math.cos(2 * math.pi * t / duration))
-        assert np.allclose(felt(simulation), expected, rtol=0, atol=1e-13)
+        assert np.allclose(measure_wind(simulation), expected, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -87,11 +87,11 @@ def test_gusts_add_to_the_mean_wind_within_their_time(hangar):
     ],
 )
 def test_shear_lets_the_wind_grow_with_the_height_of_the_frame(tags, factor, hangar):
-    simulation = hangar(windy(vehicle(()), velocity="4 -3 0.5", **tags), engine="eigen")
+    simulation = hangar(add_wind(vehicle(()), velocity="4 -3 0.5", **tags), engine="eigen")
     for z in (-1, 0, 0.04, 0.3, 1, 6.096, 20, 300):
         start(simulation, position=(1, 2, z))
         expected = np.array([4, -3, 0.5]) * factor(z)
-        assert np.allclose(felt(simulation), expected, rtol=1e-14, atol=0), z
+        assert np.allclose(measure_wind(simulation), expected, rtol=1e-14, atol=0), z
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -114,17 +114,17 @@ def test_where_the_urdf_has_two_winds_does_not_matter(engine, hangar):
 
 @pytest.mark.parametrize("by", ["world", "plugin"])
 @pytest.mark.parametrize(("model", "times"), [("appendix", 1), ("chapter2", 0)])
-def test_a_wind_that_is_not_felt_is_told_once(by, model, times, hangar, recwarn):
+def test_a_wind_without_effect_is_reported_once(by, model, times, hangar, recwarn):
     urdf = vehicle(air={**AIR, **DRAG, "dragModel": model})
     if by == "plugin":
-        simulation = hangar(windy(urdf, gusts="3 0 0 0.01 0.05"))
+        simulation = hangar(add_wind(urdf, gusts="3 0 0 0.01 0.05"))
     else:
         simulation = hangar(urdf, wind=(3, 0, 0))
     simulation.step(100)
-    told = [warning for warning in simulation.warnings if "ignores wind" in warning]
-    assert len(told) == times
-    if told:
-        assert "Set <dragModel> to chapter2" in told[0]
+    messages = [warning for warning in simulation.warnings if "ignores wind" in warning]
+    assert len(messages) == times
+    if messages:
+        assert "Set <dragModel> to chapter2" in messages[0]
 
 
 @pytest.mark.parametrize(
@@ -137,15 +137,15 @@ def test_a_wind_that_is_not_felt_is_told_once(by, model, times, hangar, recwarn)
     ],
 )
 def test_a_wind_that_cannot_be_is_refused_with_its_line(tags, says, hangar):
-    urdf = windy(vehicle(()), **tags)
+    urdf = add_wind(vehicle(()), **tags)
     line = 1 + urdf[: urdf.index("libwind")].count("\n")
     with pytest.raises(qc.InputError, match=f"urdf:{line}: plugin 'wind' .*{says}"):
         hangar(urdf)
 
 
-def test_a_shear_of_no_wind_is_told(hangar):
+def test_a_shear_without_wind_is_reported(hangar):
     with pytest.warns(qc.QuadcoreWarning, match="<shear> has no effect while <velocity> is 0"):
-        hangar(windy(vehicle(()), shear="power"))
+        hangar(add_wind(vehicle(()), shear="power"))
 
 
 def test_thin_air_scales_thrust_torque_and_drag(tmp_path):
@@ -156,7 +156,7 @@ def test_thin_air_scales_thrust_torque_and_drag(tmp_path):
         "<pressure>84550.7</pressure></atmosphere></world></sdf>"
     )
 
-    def exerted(**options):
+    def compute_wrenches(**options):
         simulation = qc.Simulation(tmp_path / "a.urdf", **options)
         return wrenches(
             start(
@@ -167,7 +167,7 @@ def test_thin_air_scales_thrust_torque_and_drag(tmp_path):
             )
         )
 
-    standard, thin = exerted(), exerted(world=tmp_path / "a.world")
+    standard, thin = compute_wrenches(), compute_wrenches(world=tmp_path / "a.world")
     density = 84550.7 / (287.05287 * 298.15)
     for term, wrench in standard.items():
         assert np.abs(wrench).max() > 0
@@ -176,7 +176,7 @@ def test_thin_air_scales_thrust_torque_and_drag(tmp_path):
         assert np.allclose(thin[term], ratio * wrench, rtol=1e-13, atol=1e-16), term
     without = urdf.replace("<airDensity>1.225</airDensity>", "")
     (tmp_path / "a.urdf").write_text(without)
-    as_is, same = exerted(), exerted(world=tmp_path / "a.world")
+    as_is, same = compute_wrenches(), compute_wrenches(world=tmp_path / "a.world")
     for term, wrench in as_is.items():
         assert wrench.tobytes() == same[term].tobytes()
         assert np.allclose(standard[term], wrench, rtol=1e-5, atol=1e-16)

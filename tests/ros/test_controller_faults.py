@@ -36,12 +36,12 @@ class TestControllerFaults(unittest.TestCase):
             rospy.delete_param("/quadcore")
         rospy.set_param("/robot_description", description())
 
-    def told(self):
-        """What nodes warn of from now on."""
+    def warnings(self):
+        """Collect the warnings of nodes from now on."""
         return self.stack.enter_context(Recording("/rosout", Log))
 
-    def wait_for_warning(self, told, words):
-        told.wait(lambda messages: any(words in m.msg for m in messages))
+    def wait_for_warning(self, warnings, words):
+        warnings.wait(lambda messages: any(words in m.msg for m in messages))
 
     def test_started_before_its_plant_it_believes_in_what_that_flies(self):
         folder = Path(self.stack.enter_context(tempfile.TemporaryDirectory()))
@@ -70,7 +70,7 @@ class TestControllerFaults(unittest.TestCase):
                     )
 
     def test_odometry_that_is_not_finite_is_refused_and_the_last_command_kept(self):
-        told = self.told()
+        warnings = self.collect_warnings()
         node = controller({"shape": "hover", "height": 10.2}, rate=1000)
         commands = Recording("/quadrotor/vel_cmd", Float64MultiArray)
         publisher = rospy.Publisher("/odom", Odometry, queue_size=10)
@@ -85,30 +85,30 @@ class TestControllerFaults(unittest.TestCase):
                 publisher.publish(message)
                 commands.wait_for_count(count)
             speeds = [np.array(m.data) for m in commands.messages]
-            self.wait_for_warning(told, "/odom: contains numbers that are not finite")
+            self.wait_for_warning(warnings, "/odom: contains numbers that are not finite")
         np.testing.assert_array_equal(speeds[1], speeds[0])
         np.testing.assert_array_equal(speeds[2], speeds[0])
         self.assertTrue(np.isfinite(speeds[3]).all())
         self.assertGreater(np.abs(speeds[3] - speeds[0]).max(), 1)
 
-    def test_two_who_command_one_vehicle_are_told(self):
-        told = self.told()
+    def test_two_commanders_of_one_vehicle_are_reported(self):
+        warnings = self.collect_warnings()
         second = Process("controller_node", "__name:=second", "_law:=geometric")
         with flight("_engine:=eigen", "_real_time_factor:=0.2"), controller(), second:
             self.wait_for_warning(
-                told, "/quadrotor/vel_cmd: both /controller and /second send commands"
+                warnings, "/quadrotor/vel_cmd: both /controller and /second send commands"
             )
 
     def test_without_odometry_it_says_so(self):
-        told = self.told()
+        warnings = self.collect_warnings()
         elsewhere = Process("controller_node", "odom:=elsewhere", "_law:=geometric")
         with flight("_paused:=true"), elsewhere:
-            self.wait_for_warning(told, "No node publishes odometry on /elsewhere")
+            self.wait_for_warning(warnings, "No node publishes odometry on /elsewhere")
 
     def test_without_a_plant_it_says_so(self):
-        told = self.told()
+        warnings = self.collect_warnings()
         with controller():
-            self.wait_for_warning(told, "No node receives commands on /quadrotor/vel_cmd")
+            self.wait_for_warning(warnings, "No node receives commands on /quadrotor/vel_cmd")
 
     def test_odometry_that_comes_seldom_is_answered_each_time(self):
         topic = self.stack.enter_context(Recording("/odom", Odometry))

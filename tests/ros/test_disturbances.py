@@ -30,12 +30,12 @@ def plugin(name, **tags):
     return f'<plugin name="{name}" filename="lib{name}_plugin.so">{inner}</plugin>'
 
 
-def disturbed(*plugins, **tags):
+def describe_with(*plugins, **tags):
     inner = "".join(plugins)
     return description(**tags).replace("</robot>", f"<gazebo>{inner}</gazebo></robot>")
 
 
-BEFALLEN = disturbed(
+BEFALLEN = describe_with(
     plugin("payload", mass="0.13", xyz="0.02 -0.01 -0.07", inertia="2e-4 0 0 1e-4 0 3e-4"),
     plugin("push", xyz="0.01 0.02 0"),
     plugin("fault"),
@@ -142,7 +142,7 @@ class TestDisturbances(unittest.TestCase):
             simulation.command(speeds(said["x"], said["vz"], said["wx"]))
             pieces.append(simulation.run(simulation.dt, topics=topics))
         rows = [pieces[0].table, *(piece.table[1:] for piece in pieces[1:])]
-        told = {
+        topics = {
             name: {
                 field: np.concatenate(
                     [column, *(piece.topics[name][field][1:] for piece in pieces[1:])]
@@ -151,7 +151,7 @@ class TestDisturbances(unittest.TestCase):
             }
             for name in topics
         }
-        return qc.Log(np.concatenate(rows), {}, topics=told)
+        return qc.Log(np.concatenate(rows), {}, topics=topics)
 
     def test_what_happens_by_service_is_flown_as_what_is_published_in_process(self):
         self.assert_flown_as_in_process(BEFALLEN, TOPICS, ByService())
@@ -162,10 +162,10 @@ class TestDisturbances(unittest.TestCase):
     def test_turbulence_and_noise_are_the_same_bytes_through_ros(self):
         noise = {"positionNoise": "0.01", "linearVelocityNoise": "0.05", "orientationNoise": "0.02"}
         wind = plugin("wind", velocity="3 -2 0.5", turbulence="15", gusts="2 1 0 0.05 0.1")
-        urdf = disturbed(wind, dragModel="chapter2", **noise)
+        urdf = describe_with(wind, dragModel="chapter2", **noise)
         self.assert_flown_as_in_process(urdf, ["odom", "wind"], seed=23)
 
-    def test_a_service_that_is_told_what_cannot_be_says_so_and_changes_nothing(self):
+    def test_an_impossible_request_fails_and_changes_nothing(self):
         with flight("_paused:=true", urdf=BEFALLEN), Recording("/odom", Odometry) as odometry:
             odometry.wait_for_publisher()
             step(5)

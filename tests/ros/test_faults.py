@@ -36,7 +36,7 @@ class TestFaults(unittest.TestCase):
             self.assertEqual(diagnostic("commands"), 1)
             joints.wait(lambda m: np.allclose(m[-1].velocity, HOVER, rtol=0.01))
 
-    def test_each_kind_of_wrong_command_is_told(self):
+    def test_each_kind_of_wrong_command_is_reported(self):
         with flight() as node, commander() as send:
             for speeds in ([1.0], [NAN] * 4, [1e300] * 4):
                 send(speeds)

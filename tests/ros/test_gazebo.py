@@ -47,7 +47,7 @@ class TestGazebo(unittest.TestCase):
         for kind, checksum in CHECKSUMS.items():
             self.assertEqual(kind._md5sum, checksum, kind)
 
-    def test_a_state_that_is_set_is_the_state_that_is_told(self):
+    def test_a_state_that_is_set_is_the_state_that_is_returned(self):
         with flight("_paused:=true"):
             models = Recording("/gazebo/model_states", msg.ModelStates).wait_for_connection()
             links = Recording("/gazebo/link_states", msg.LinkStates).wait_for_connection()
@@ -58,11 +58,11 @@ class TestGazebo(unittest.TestCase):
                 twist=Twist(Vector3(0.5, 0, 0), Vector3(0, 0, 2)),
             )
             self.assertTrue(service("set_model_state", srv.SetModelState)(state).success)
-            told = get("quadrotor", "")
-            self.assertTrue(told.success)
-            np.testing.assert_allclose(numbers(told.pose.position), [1, 2, 30])
-            np.testing.assert_allclose(numbers(told.pose.orientation), [0, 0.6, 0, 0.8])
-            np.testing.assert_allclose(numbers(told.twist.angular), [0, 0, 2], atol=1e-15)
+            response = get("quadrotor", "")
+            self.assertTrue(response.success)
+            np.testing.assert_allclose(numbers(response.pose.position), [1, 2, 30])
+            np.testing.assert_allclose(numbers(response.pose.orientation), [0, 0.6, 0, 0.8])
+            np.testing.assert_allclose(numbers(response.twist.angular), [0, 0, 2], atol=1e-15)
 
             # Seen from itself it is at rest, and a rotor's arm is 0.2 m away and turns along.
             itself = get("quadrotor", FRAME)
@@ -100,18 +100,19 @@ class TestGazebo(unittest.TestCase):
 
     def test_what_does_not_exist_is_said(self):
         with flight("_paused:=true"):
-            told = service("get_model_state", srv.GetModelState)("quadrotr", "")
-            self.assertFalse(told.success)
+            response = service("get_model_state", srv.GetModelState)("quadrotr", "")
+            self.assertFalse(response.success)
             self.assertEqual(
-                told.status_message, "model 'quadrotr' does not exist. The model here is quadrotor."
+                response.status_message,
+                "model 'quadrotr' does not exist. The model here is quadrotor.",
             )
-            told = service("get_link_state", srv.GetLinkState)("quadrotor::fram", "")
+            response = service("get_link_state", srv.GetLinkState)("quadrotor::fram", "")
             self.assertIn(
-                "'quadrotor::fram' does not exist. Choose one of world", told.status_message
+                "'quadrotor::fram' does not exist. Choose one of world", response.status_message
             )
             push = service("apply_body_wrench", srv.ApplyBodyWrench)
-            told = push(body_name="quadrotor::rotor_1", duration=rospy.Duration(1))
-            self.assertFalse(told.success)
+            response = push(body_name="quadrotor::rotor_1", duration=rospy.Duration(1))
+            self.assertFalse(response.success)
 
     def test_a_wrench_acts_for_its_time(self):
         with flight("_paused:=true", urdf=description()):
@@ -119,8 +120,8 @@ class TestGazebo(unittest.TestCase):
             push = service("apply_body_wrench", srv.ApplyBodyWrench)
             step(1)
             force = Wrench(force=Vector3(2, 0, 0))
-            told = push(FRAME, "", Point(), force, rospy.Time(0.005), rospy.Duration(0.01))
-            self.assertTrue(told.success)
+            response = push(FRAME, "", Point(), force, rospy.Time(0.005), rospy.Duration(0.01))
+            self.assertTrue(response.success)
             step(4)
             self.assertLess(abs(state("quadrotor", "").twist.linear.x), 1e-20)
             step(10)
@@ -141,20 +142,21 @@ class TestGazebo(unittest.TestCase):
                 state("quadrotor", "").twist.linear.x, twice, delta=2e-3 * pushed
             )
 
-    def test_physics_are_told_and_their_pace_set(self):
+    def test_physics_properties_are_returned_and_their_pace_set(self):
         with flight("_paused:=true", "_real_time_factor:=0.5"):
             get = service("get_physics_properties", srv.GetPhysicsProperties)
             change = service("set_physics_properties", srv.SetPhysicsProperties)
             now = get()
             self.assertEqual((now.time_step, now.pause, now.max_update_rate), (0.001, True, 500))
             self.assertEqual((now.gravity.z, now.ode_config.sor_pgs_iters), (-9.8, 50))
-            told = change(now.time_step, 2000, now.gravity, now.ode_config)
-            self.assertTrue(told.success, told.status_message)
+            response = change(now.time_step, 2000, now.gravity, now.ode_config)
+            self.assertTrue(response.success, response.status_message)
             self.assertEqual(get().max_update_rate, 2000)
-            told = change(0.002, 2000, now.gravity, now.ode_config)
-            self.assertFalse(told.success)
+            response = change(0.002, 2000, now.gravity, now.ode_config)
+            self.assertFalse(response.success)
             self.assertEqual(
-                told.status_message, "time_step cannot be changed during a flight. Start with dt:=."
+                response.status_message,
+                "time_step cannot be changed during a flight. Start with dt:=.",
             )
             world = service("get_world_properties", srv.GetWorldProperties)()
             self.assertEqual(world.model_names, ["ground_plane", "quadrotor"])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What rviz is told to draw of a vehicle is the vehicle."""
+"""The markers for rviz show the vehicle."""
 
 import unittest
 

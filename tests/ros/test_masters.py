@@ -65,10 +65,12 @@ class TestMasters(unittest.TestCase):
         self.shell(port, "rostopic", "echo", "-n1", "/diagnostics")
 
     def odometry(self, port):
-        """Time (s) and altitude (m) that a subscriber who comes now is told."""
+        """Time (s) and altitude (m) that a new subscriber receives."""
         lines = self.shell(port, "rostopic", "echo", "-n1", "-p", "/odom").splitlines()
-        told = dict(zip(lines[0].split(","), lines[-1].split(",")))
-        return float(told["field.header.stamp"]) / 1e9, float(told["field.pose.pose.position.z"])
+        message = dict(zip(lines[0].split(","), lines[-1].split(",")))
+        return float(message["field.header.stamp"]) / 1e9, float(
+            message["field.pose.pose.position.z"]
+        )
 
     def flies_at(self, altitude, port):
         """Whether the vehicle flies there for a second and more.
@@ -128,7 +130,7 @@ class TestMasters(unittest.TestCase):
                     )
                     kind = self.shell(port, "rostopic", "type", "/quadrotor/vel_cmd")
                     self.assertEqual(kind.strip(), "std_msgs/Float64MultiArray")
-                    # Both old connections stand: the vehicle hovers where it was told to.
+                    # Both old connections stand: the vehicle hovers at its set point.
                     self.assertTrue(self.flies_at(2, port))
                     self.shell(port, "rosservice", "call", "/gazebo/pause_physics")
                     node.end()

@@ -33,7 +33,7 @@ def final(*arguments, steps=300, **parameters):
     return [v.x, v.y, v.z]
 
 
-def flown(steps=300, **parameters):
+def fly_in_python(steps=300, **parameters):
     """The same in Python."""
     simulation = qc.Simulation(
         "quadrotor",
@@ -62,14 +62,14 @@ def refusal(*arguments, urdf=None):
 class TestParameters(unittest.TestCase):
     def test_set_gives_tags_other_values(self):
         given = "_set:=drone_plugin.parasiticDragCoeff=0.5 drone_plugin.profileDragCoeff=0.1"
-        self.assertEqual(final(given), flown(parasiticDragCoeff=0.5, profileDragCoeff=0.1))
+        self.assertEqual(final(given), fly_in_python(parasiticDragCoeff=0.5, profileDragCoeff=0.1))
         listed = [
             "drone_plugin.parasiticDragCoeff=0.5",
             "motorpid_plugin.rotorJoints=rotor1 rotor2",
         ]
-        self.assertEqual(final(set=listed), flown(parasiticDragCoeff=0.5))
+        self.assertEqual(final(set=listed), fly_in_python(parasiticDragCoeff=0.5))
 
-    def test_wrong_settings_are_told_as_on_the_command_line(self):
+    def test_wrong_settings_are_refused_as_on_the_command_line(self):
         for given, message in (
             ("kp", "parameter ~set: 'kp' is not valid. Write PLUGIN.TAG=VALUE."),
             ("motorpid_plugin.kp=", "is not valid. Write PLUGIN.TAG=VALUE."),
@@ -87,8 +87,8 @@ class TestParameters(unittest.TestCase):
     def test_drag_leaves_the_chosen_effect(self):
         for drag in ("none", *EFFECTS):
             off = {f"{effect}DragCoeff": 0 for effect in EFFECTS if effect != drag}
-            self.assertEqual(final(f"_drag:={drag}"), flown(**off), drag)
-        self.assertEqual(final("_drag:=all"), flown())
+            self.assertEqual(final(f"_drag:={drag}"), fly_in_python(**off), drag)
+        self.assertEqual(final("_drag:=all"), fly_in_python())
 
     def test_wrong_drags_are_refused(self):
         error = refusal("_drag:=profil")
@@ -117,25 +117,25 @@ class TestParameters(unittest.TestCase):
             rospy.set_param("/quadcore/paused", False)
             clock.wait(lambda m: m[-1].clock > paused_at)
 
-    def test_what_cannot_be_changed_while_it_flies_is_told_once(self):
+    def test_parameters_that_are_fixed_in_flight_are_reported_once(self):
         messages = (
             "parameter ~engine: has no effect during a flight; only paused and real_time_",
             "parameter ~paused: give true or false",
             "parameter ~real_time_factor: give a number >= 0",
         )
-        with flight("_engine:=ode") as node, Recording("/rosout", Log) as told:
-            told.wait_for_connection(publishers=2)  # the node, and this test itself
+        with flight("_engine:=ode") as node, Recording("/rosout", Log) as rosout:
+            rosout.wait_for_connection(publishers=2)  # the node, and this test itself
             rospy.set_param("/quadcore/engine", "eigen")
             rospy.set_param("/quadcore/paused", "yes")
             rospy.set_param("/quadcore/real_time_factor", -1)
             for message in messages:
-                told.wait(lambda logs, says=message: any(says in log.msg for log in logs))
+                rosout.wait(lambda logs, says=message: any(says in log.msg for log in logs))
             rospy.sleep(2.5)  # it looks once a second
             node.end()
         for message in messages:
             self.assertEqual(node.error.count(message), 1, node.error)
 
-    def test_a_warning_of_the_flight_is_told_once_a_flight(self):
+    def test_a_warning_is_logged_once_a_flight(self):
         with flight("_roll:=3", "_paused:=true") as node:
             for _ in "ab":
                 step(100)

@@ -115,7 +115,7 @@ class TestPluginTopics(unittest.TestCase):
         self.assertEqual(noisy[-1].pose.covariance[0], 0.1**2)
         self.assertEqual(noisy[-1].child_frame_id, "drone")
 
-    def test_a_message_of_the_wrong_length_is_told_and_changes_nothing(self):
+    def test_a_message_of_the_wrong_length_is_reported_and_changes_nothing(self):
         with flight(urdf=with_plugins(ECHO)) as node:
             with Recording("/echo", Float64MultiArray) as echo:
                 echo.wait_for_count(1)

@@ -31,8 +31,8 @@ class TestRotorsHover(unittest.TestCase):
             last = flight.wait(hovers, 5 * harness.LONG)[-1]
             self.assertAlmostEqual(last.pose.pose.position.y, i, delta=0.1)
             self.assertEqual(last.child_frame_id, f"{name}/base_link")
-            told = speeds[name].wait_for_count(1)[-1].angular_velocities
-            self.assertEqual(len(told), ROTORS[name])
+            velocities = speeds[name].wait_for_count(1)[-1].angular_velocities
+            self.assertEqual(len(velocities), ROTORS[name])
         self.assertEqual(len(harness.publishers("/clock")), 1)
 
         # To clients of gazebo_ros they are models of one world.

@@ -41,7 +41,7 @@ class TestRotorsTopics(unittest.TestCase):
         for message, checksum in CHECKSUMS.items():
             self.assertEqual(message._md5sum, checksum)
 
-    def test_motors_take_speeds_directly_and_a_wind_is_told(self):
+    def test_motors_take_speeds_directly_and_the_wind_is_published(self):
         urdf = load_description("firefly", {"namespace": "windy"}).text
         urdf = urdf.replace("</robot>", WIND + RECEIVER + "</robot>")
         with flight("_paused:=true", urdf=urdf, namespace="/windy"):
@@ -60,8 +60,10 @@ class TestRotorsTopics(unittest.TestCase):
             for topic in (wind, force, fix):
                 topic.wait_for_count(1)
             ground_speed.wait(lambda m: m and m[-1].twist.linear.z != 0)
-            told = speeds.messages[-1].angular_velocities
-            self.assertTrue(np.allclose(told, [500, -510, 520, -530, 540, -550], rtol=0.05), told)
+            velocities = speeds.messages[-1].angular_velocities
+            self.assertTrue(
+                np.allclose(velocities, [500, -510, 520, -530, 540, -550], rtol=0.05), velocities
+            )
             self.assertEqual(wind.messages[-1].header.frame_id, "world")
             self.assertEqual(wind.messages[-1].velocity.y, 3)
             self.assertEqual(force.messages[-1].wrench.force.y, 0.5)

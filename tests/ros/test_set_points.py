@@ -200,7 +200,7 @@ class TestSetPoints(unittest.TestCase):
         reached = self.settled(is_there)
         later = self.settled(lambda m: time_of(m) > time_of(reached) + 2)
         self.assertTrue(is_there(later))
-        # It leans to where it drifts, and no reference is told of.
+        # It leans to where it drifts, and no reference is published.
         self.assertLess(later.pose.pose.position.y, reached.pose.pose.position.y)
         self.assertFalse([m for m in self.reference.messages if time_of(m) >= time_of(reached)])
 
@@ -240,17 +240,17 @@ class TestSetPoints(unittest.TestCase):
         ]
         self.ask("/command/pose", pose(0, 0, 10.2))
         self.settled(lambda m: time_of(m) > 8)
-        with Recording("/rosout", Log) as told:
+        with Recording("/rosout", Log) as rosout:
             for topic, message, says in cases:
 
-                def is_told(topic=topic, message=message, says=says):
+                def is_reported(topic=topic, message=message, says=says):
                     self.ask(topic, message)
                     return any(
                         m.msg.startswith(f"{topic}: refused: ") and says in m.msg
-                        for m in list(told.messages)
+                        for m in list(rosout.messages)
                     )
 
-                wait_until(is_told)
+                wait_until(is_reported)
         # The last good one stays.
         now = self.odometry.messages[-1].header.stamp.to_sec()
         message = self.settled(lambda m: time_of(m) > now + 1)

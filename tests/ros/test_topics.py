@@ -220,8 +220,8 @@ class TestTopics(unittest.TestCase):
         place = ("_reference/shape:=hover", "_reference/height:=12")
         topic = Recording("/odom", Odometry)
         mine = description().replace('name="quadrotor"', 'name="mine"', 1)
-        law = ("controller_node", "_law:=geometric", *place)
-        with flight(*fast, urdf=mine), Process(*law), topic as odometry:
+        controller = ("controller_node", "_law:=geometric", *place)
+        with flight(*fast, urdf=mine), Process(*controller), topic as odometry:
             odometry.wait(lambda m: m and abs(m[-1].pose.pose.position.z - 12) < 0.01)
 
 

@@ -39,14 +39,14 @@ class TestWaiting(unittest.TestCase):
     def test_odometry_is_not_shown_again_to_who_has_seen_it(self):
         with flight(*ALONE) as node, Recording("/odom", Odometry) as odometry:
             odometry.wait_for_count(1)
-            with Recording("/rosout", Log) as told:
-                told.wait(lambda logs: sum("no node publishes" in log.msg for log in logs) >= 2)
+            with Recording("/rosout", Log) as rosout:
+                rosout.wait(lambda logs: sum("no node publishes" in log.msg for log in logs) >= 2)
             self.assertEqual([tick(m) for m in odometry.messages], [0])
             node.end()
 
     def test_the_reason_is_said_again_and_again(self):
-        with flight(*ALONE) as node, Recording("/rosout", Log) as told:
-            told.wait(lambda logs: sum("no node publishes" in log.msg for log in logs) >= 2)
+        with flight(*ALONE) as node, Recording("/rosout", Log) as rosout:
+            rosout.wait(lambda logs: sum("no node publishes" in log.msg for log in logs) >= 2)
             node.end()
         reason = (
             "lockstep: no node publishes on /quadrotor/vel_cmd. The flight waits at "

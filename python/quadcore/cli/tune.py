@@ -41,7 +41,7 @@ def register(commands: Any) -> None:
         """,
     )
     controller = parser.add_argument(
-        "law",
+        "controller",
         metavar="CONTROLLER",
         help="controller, as for `quadcore run`; the search starts at its parameters",
     )
@@ -161,7 +161,7 @@ def _make_problem(arguments: argparse.Namespace) -> Problem:
     if out.parent != _find_folder(arguments):  # which is made later
         check_writable(out)
     return Problem(
-        arguments.law,
+        arguments.controller,
         arguments.model,
         arguments.reference,
         arguments.hold_out,

@@ -68,10 +68,10 @@ def is_vectorized(controller: Any) -> bool:
     InputError
         If the attribute is not a bool.
     """
-    told = getattr(controller, "vectorized", False)
-    if not isinstance(told, (bool, np.bool_)):
-        raise InputError(f"controller: its vectorized is {shorten(told)}. Give True or False.")
-    return bool(told)
+    declared = getattr(controller, "vectorized", False)
+    if not isinstance(declared, (bool, np.bool_)):
+        raise InputError(f"controller: its vectorized is {shorten(declared)}. Give True or False.")
+    return bool(declared)
 
 
 def check_commands(answer: Any, n: int, width: int) -> np.ndarray:

@@ -184,7 +184,7 @@ def _advance(
                 raise
             receive(whole, wrenches)
 
-    done, steps, told = 0, 1, 0.0
+    done, steps, last_report = 0, 1, 0.0
     try:
         while done < total:
             hand_over()
@@ -196,9 +196,9 @@ def _advance(
             now = time.perf_counter()
             if now - started < _PIECE:
                 steps *= 2
-            if progress is not None and (now - told >= _PIECE or done == total):
+            if progress is not None and (now - last_report >= _PIECE or done == total):
                 progress(done, total)
-                told = now
+                last_report = now
     finally:
         hand_over()
 
@@ -223,10 +223,10 @@ def list_columns(
         If a topic does not exist, or has the name of a column of the pilot.
     """
     columns: List[str] = _core.flight_columns(simulation, topics)
-    told = [] if pilot is None else pilot.columns
-    for name in set(topics) & {column.partition(".")[0] for column in told}:
+    of_pilot = [] if pilot is None else pilot.columns
+    for name in set(topics) & {column.partition(".")[0] for column in of_pilot}:
         raise _core.InputError(f"topic '{name}': the log holds what is flown under this name")
-    return columns + list(told)
+    return columns + list(of_pilot)
 
 
 class Rows:

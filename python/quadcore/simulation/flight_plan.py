@@ -333,17 +333,17 @@ class FlightPlan:
         return {name: getattr(self, name) for name in names}
 
     def _describe(self) -> Dict[str, Any]:
-        told = {item.name: getattr(self, item.name) for item in fields(self)}
+        values = {item.name: getattr(self, item.name) for item in fields(self)}
         for name in ("model", "world"):
-            told[name] = [told[name].document.text, told[name].ignored_elements.ignored]
+            values[name] = [values[name].document.text, values[name].ignored_elements.ignored]
         for name, own in (("controller", BuiltInController), ("reference", references.Shape)):
-            if told[name] is None:
-                del told[name]  # as plans of before had none
-            elif not isinstance(told[name], own):
+            if values[name] is None:
+                del values[name]  # as plans of before had none
+            elif not isinstance(values[name], own):
                 raise _core.InputError(f"a plan whose {name} is your own has no fingerprint")
             else:
-                told[name] = told[name].to_dict()
-        told["dt"] = self.step
+                values[name] = values[name].to_dict()
+        values["dt"] = self.step
         if self.commands is not None:  # 10 and 10.0 are the same
-            told["commands"] = np.asarray(self.commands, dtype=float).tolist()
-        return {"version": _VERSION, **told}
+            values["commands"] = np.asarray(self.commands, dtype=float).tolist()
+        return {"version": _VERSION, **values}

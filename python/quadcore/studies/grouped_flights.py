@@ -220,9 +220,9 @@ def _fly(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
             found[key] = _Kind(plan)
         kinds.append(found[key])
     batch = _make_batch(plans, kinds)
-    laws, references = zip(*(kind.guide for kind in kinds if kind.guide is not None))
+    controllers, references = zip(*(kind.guide for kind in kinds if kind.guide is not None))
     tables, rows, calls, saturated, rates, commands, seconds = batch._follow(
-        laws,
+        controllers,
         references,
         np.array([kind.pilot.rate for kind in kinds]),
         np.array([kind.pilot.delay for kind in kinds]),

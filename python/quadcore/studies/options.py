@@ -318,6 +318,6 @@ def _paragraphs(kind: Type[Options]) -> str:
     lines = []
     for each in fields(kind):
         meaning = explain(each.metadata["about"], each.default)
-        told = textwrap.fill(f"{meaning[0].upper()}{meaning[1:]}.", 88)
-        lines.append(f"    {each.name}\n{textwrap.indent(told, ' ' * 8)}\n")
+        description = textwrap.fill(f"{meaning[0].upper()}{meaning[1:]}.", 88)
+        lines.append(f"    {each.name}\n{textwrap.indent(description, ' ' * 8)}\n")
     return "".join(lines)

@@ -29,24 +29,24 @@ from ...simulation.simulation import Simulation
 from .linear_loops import Loop, make_loops, make_yaw, measure_drag
 
 
-def read_gains(law: BuiltInController) -> Dict[str, float]:
+def read_gains(controller: BuiltInController) -> Dict[str, float]:
     """Return all parameters of a controller, defaults included."""
-    table = next(entry[2] for entry in _core.controllers() if entry[0] == law.name)
+    table = next(entry[2] for entry in _core.controllers() if entry[0] == controller.name)
     flags = {"true": 1.0, "false": 0.0}
     defaults = {
         spec.name: flags.get(spec.default, _core.parse_number(spec.default)) for spec in table
     }
-    return {**{n: v for n, v in defaults.items() if v is not None}, **law.parameters}
+    return {**{n: v for n, v in defaults.items() if v is not None}, **controller.parameters}
 
 
-def has_poles(law: Any) -> bool:
+def has_poles(controller: Any) -> bool:
     """Whether a controller is a cascade of PIDs."""
-    return isinstance(law, BuiltInController) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(
-        read_gains(law)
+    return isinstance(controller, BuiltInController) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(
+        read_gains(controller)
     )
 
 
-def compute_poles(law: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]]:
+def compute_poles(controller: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]]:
     """Compute poles and delay margin of each axis.
 
     Parameters
@@ -71,7 +71,7 @@ def compute_poles(law: BuiltInController, simulation: Simulation) -> List[Dict[s
     """
     from ...thesis.chapter2 import Vehicle  # scipy is slow to import
 
-    gains, vehicle = read_gains(law), Vehicle.of(simulation)
+    gains, vehicle = read_gains(controller), Vehicle.of(simulation)
     inertia = float(np.mean(vehicle.rotor_inertia))
     lag = inertia / vehicle.motor_gain
     drag = measure_drag(simulation) if exerts_wrenches(simulation.engine) else vehicle.linear_drag
@@ -86,7 +86,7 @@ def compute_poles(law: BuiltInController, simulation: Simulation) -> List[Dict[s
     loops["yaw"] = make_yaw(gains, vehicle, drag, lag, zero)
     without = make_yaw(gains, vehicle, drag, lag, math.inf).find_poles()
     causes = {"x, y": _explain_xy(gains), "yaw": _explain_yaw(zero, without)}
-    known = law.delay + 0.5 / law.rate
+    known = controller.delay + 0.5 / controller.rate
     return [
         _make_row(axis, loop, zero if axis == "yaw" else math.inf, causes.get(axis, ""), known)
         for axis, loop in loops.items()

@@ -171,9 +171,9 @@ def fit(
     KeyboardInterrupt
         With the attribute `model`, the model with the values of the last round.
     """
-    told = dict(locals())
+    arguments_given = dict(locals())
     options = ("parameters", "world", "dt", "xacro_args", "ignore")
-    arguments.check({name: told[name] for name in (*_KINDS, *options)}, _KINDS)
+    arguments.check({name: arguments_given[name] for name in (*_KINDS, *options)}, _KINDS)
     named = check_free_names(free)
     fitted = FittedModel(named, model, engine, world, dt, parameters, xacro_args, ignore)
     simulation = fitted.simulation

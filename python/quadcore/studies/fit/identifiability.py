@@ -76,13 +76,13 @@ def analyse(
     active = np.flatnonzero(acts)
     unit = derivative[:, active] / lengths[active]
     _, singular, rows = np.linalg.svd(unit, full_matrices=False)
-    told = singular > _SAME * max(1.0, singular.max(initial=0))
+    identified = singular > _SAME * max(1.0, singular.max(initial=0))
     variance = float(left @ left) / max(1, freedom)
-    inverse = (rows[told].T / singular[told] ** 2) @ rows[told] * variance
+    inverse = (rows[identified].T / singular[identified] ** 2) @ rows[identified] * variance
     covariance = np.zeros((len(names), len(names)))
     covariance[np.ix_(active, active)] = inverse / np.outer(lengths[active], lengths[active])
-    untold = rows[~told]
-    groups = _group_parameters(untold)
+    unidentified = rows[~identified]
+    groups = _group_parameters(unidentified)
     combinations = []
     deviations = dict(zip(names, np.sqrt(np.diag(covariance)).tolist()))
     for group in groups:

@@ -108,8 +108,8 @@ class _Attempt:
         elif len(numbers) > 1 or (_may_be_random(outcome) and self._number < _ATTEMPTS):
             self.again.extend(numbers)
         else:
-            told = f"{outcome}, {self._number} times" if self._number > 1 else str(outcome)
-            self._take(Row(numbers[0], told, None, compute_fingerprint(self._plan, numbers[0])))
+            reason = f"{outcome}, {self._number} times" if self._number > 1 else str(outcome)
+            self._take(Row(numbers[0], reason, None, compute_fingerprint(self._plan, numbers[0])))
 
 
 def fly_on_executor(

@@ -18,36 +18,40 @@ def write_command(plan: AnyPlan, row: int) -> Optional[str]:
     if not isinstance(plan, Plan):
         return None
     case = plan[row]
-    told, point = plan.describe(), plan.design[case.point]
-    flags: Dict[str, Any] = {"engine": plan.engines[case.engine], "world": told["world"]}
+    description, point = plan.describe(), plan.design[case.point]
+    flags: Dict[str, Any] = {"engine": plan.engines[case.engine], "world": description["world"]}
     if plan.control.is_closed_loop:
         flown = plan.control.things[case.controller]
         if not isinstance(flown, str):
             return None
         flags["controller"] = _write_controller(plan, row, flown, point)
         flags["reference"] = plan.control.references[case.reference]
-        flags["controller-rate"], flags["delay"] = told["controller_rate"], told["delay"]
+        flags["controller-rate"], flags["delay"] = (
+            description["controller_rate"],
+            description["delay"],
+        )
         for name in ("rate", "delay"):
             given = point.get(f"{OF_CONTROLLER}{name}")
             if given is not None:
                 flags["controller-rate" if name == "rate" else name] = given
     else:
-        flags["commands"] = told["commands"]
+        flags["commands"] = description["commands"]
     for name in ("world", "scenario"):
         flags[name] = point.get(name, flags.get(name))
-    flags.update(seed=plan.seeds[case.seed], duration=told["duration"], dt=plan.options.dt)
-    if told["spawn"] is not None:
-        flags["spawn"] = ",".join(map(repr, told["spawn"]))
-    if told["wind"] is not None:
-        flags["wind"] = ",".join(map(repr, told["wind"]))
+    flags.update(seed=plan.seeds[case.seed], duration=description["duration"], dt=plan.options.dt)
+    if description["spawn"] is not None:
+        flags["spawn"] = ",".join(map(repr, description["spawn"]))
+    if description["wind"] is not None:
+        flags["wind"] = ",".join(map(repr, description["wind"]))
     words = ["quadcore", "run", plan.models[case.model]]
     words += [f"--{name}={_format(value)}" for name, value in flags.items() if value is not None]
-    words += [f"--xacro={name}:={value}" for name, value in told["xacro"].items()]
+    words += [f"--xacro={name}:={value}" for name, value in description["xacro"].items()]
     words += [
-        f"--set={name}={value}" for name, value in _collect_parameters(told["set"], point).items()
+        f"--set={name}={value}"
+        for name, value in _collect_parameters(description["set"], point).items()
     ]
-    words += [f"--ignore={name}" for name in told["ignore"]]
-    words.append(f"--log-every={told['log_every']}")
+    words += [f"--ignore={name}" for name in description["ignore"]]
+    words.append(f"--log-every={description['log_every']}")
     return " ".join(map(shlex.quote, words))
 
 
@@ -68,8 +72,8 @@ def _write_controller(plan: Plan, row: int, text: str, point: Mapping[str, str])
         name, given = controllers.split_own(text)
         parameters = {**given, **pick_controller_values(point)}
     else:
-        law: BuiltInController = plan.make_spec(row).plan.controller
-        name, parameters = law.name, law.parameters
+        controller: BuiltInController = plan.make_spec(row).plan.controller
+        name, parameters = controller.name, controller.parameters
     values: List[str] = [f"{key}={value!r}" for key, value in parameters.items()]
     return f"{name}:{','.join(values)}"
 

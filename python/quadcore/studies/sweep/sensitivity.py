@@ -134,11 +134,11 @@ def _sobol_indices(
         from SALib.analyze import sobol
 
     names = list(design.drawn)
-    told = sobol.analyze(
+    indices = sobol.analyze(
         make_unit_problem(len(names)),
         values.reshape(points, seeds).mean(axis=1),
         calc_second_order=False,
         seed=0,
     )
-    parts = zip(*(told[key].tolist() for key in ("S1", "S1_conf", "ST", "ST_conf")))
+    parts = zip(*(indices[key].tolist() for key in ("S1", "S1_conf", "ST", "ST_conf")))
     return {name: dict(zip(_INDICES, part)) for name, part in zip(names, parts)}

@@ -68,7 +68,7 @@ class Problem:
 
     Parameters
     ----------
-    law, models, references_, held_out, held_out_models, only, engine, vary, options
+    controller, models, references_, held_out, held_out_models, only, engine, vary, options
         As for `tune`.
 
     Raises
@@ -79,7 +79,7 @@ class Problem:
 
     def __init__(
         self,
-        law: Union[str, BuiltInController],
+        controller: Union[str, BuiltInController],
         models: Sequence[Union[str, Path]],
         references_: Sequence[Any],
         held_out: Sequence[Any],
@@ -93,11 +93,12 @@ class Problem:
             raise InputError(
                 "tuning requires a model, a reference and a held-out reference. Give each of them."
             )
-        if not isinstance(law, (str, BuiltInController)):
+        if not isinstance(controller, (str, BuiltInController)):
             raise InputError(
-                f"the controller is {shorten(law)}. Give its name, or one of quadcore.controllers."
+                f"the controller is {shorten(controller)}. Give its name, or one of "
+                "quadcore.controllers."
             )
-        self.runs_user_code = names_user_code(law)
+        self.runs_user_code = names_user_code(controller)
         trained, judged = (
             add_labels("reference", some, references.Shape) for some in (references_, held_out)
         )
@@ -114,12 +115,14 @@ class Problem:
         everything = [*models, *held_out_models]
         check_models(everything, design)
         timing = options.controller_rate, options.delay
-        control = ControlSetup([("", law)], [*trained, *judged], *timing, options.spawn is None)
+        control = ControlSetup(
+            [("", controller)], [*trained, *judged], *timing, options.spawn is None
+        )
         self._cases = Cases(design, control, everything, [engine], options)
         self._cases.check()
         self.models = self._cases.models[: len(models)]
         self.vehicle = self._cases.vehicles[0]
-        self._own = _read_own(str(law), options.time_limit) if self.runs_user_code else None
+        self._own = _read_own(str(controller), options.time_limit) if self.runs_user_code else None
         self.training: List[Trial] = []
         self.held_out: List[Trial] = []
         for case in sorted(self._cases, key=lambda case: (case.model, case[1:])):
@@ -141,8 +144,10 @@ class Problem:
             }
             kept = {**self._own.parameters, **gains}
             return replace(self._own, vehicle=self.vehicle, parameters=kept, **given)
-        law = self._make_controller(gains)
-        return Gains(law.name, self.vehicle, law.rate, law.delay, law.parameters)
+        controller = self._make_controller(gains)
+        return Gains(
+            controller.name, self.vehicle, controller.rate, controller.delay, controller.parameters
+        )
 
     def _make_controller(self, gains: Mapping[str, float]) -> Any:
         return self._cases.control.make(0, self.vehicle, gains)
@@ -214,7 +219,7 @@ class Problem:
     def list_settings(self) -> Dict[str, Any]:
         """Return the settings of the flights, as plain values."""
         plan = self.training[0].plan
-        told = {each.name: getattr(self.options, each.name) for each in fields(Options)}
+        values = {each.name: getattr(self.options, each.name) for each in fields(Options)}
         axes = {axis.name: list(axis.values) for axis in self._cases.design.listed}
         defaults = vars(Options())
         return {
@@ -223,7 +228,7 @@ class Problem:
             "dt": plan.step,
             **{
                 name: _make_plain(value)
-                for name, value in told.items()
+                for name, value in values.items()
                 if value and value != defaults[name] and name not in _UNLISTED
             },
             **({"vary": axes} if axes else {}),
@@ -242,28 +247,32 @@ class Problem:
 
     def _start_gains(self, only: Optional[Sequence[str]]) -> Dict[str, float]:
         start = self.describe_controller({})
-        law, numbers = start.law, dict(start.parameters)
+        controller, numbers = start.law, dict(start.parameters)
         if self._own is None:
-            table = next(specs for name, _, specs in _core.controllers() if name == law)
+            table = next(specs for name, _, specs in _core.controllers() if name == controller)
             numbers = {
                 spec.name: float(start.parameters.get(spec.name, spec.default))
                 for spec in table
                 if not spec.is_flag
             }
         elif only is None:
-            raise InputError(f"controller '{law}' is your own. Name its parameters with --free.")
+            raise InputError(
+                f"controller '{controller}' is your own. Name its parameters with --free."
+            )
         names = [name for name in numbers if _GAIN.fullmatch(name)] if only is None else only
         for name in names:
             if name not in numbers:
                 raise InputError(
-                    f"controller '{law}' has no parameter '{name}'. Use some of "
+                    f"controller '{controller}' has no parameter '{name}'. Use some of "
                     f"{', '.join(numbers)}."
                 )
             if only is not None and not numbers[name] > 0:
                 raise InputError(f"{name} is {numbers[name]:g}. Start with more than 0.")
         positive = {name: numbers[name] for name in names if numbers[name] > 0}
         if not positive:
-            raise InputError(f"controller '{law}' has no gain above 0. Set some at the start.")
+            raise InputError(
+                f"controller '{controller}' has no gain above 0. Set some at the start."
+            )
         return positive
 
 

@@ -35,7 +35,7 @@ _INTERRUPTED = "interrupted"
     budget=arguments.WHOLE,
 )
 def tune(
-    law: Union[ControllerName, str, BuiltInController],
+    controller: Union[ControllerName, str, BuiltInController],
     model: Names = "quadrotor",
     references: References = ("spiral", "step"),
     held_out: References = ("circle", "eight"),
@@ -56,7 +56,7 @@ def tune(
 
     Parameters
     ----------
-    law
+    controller
         Controller name, ``NAME:KEY=VALUE,...``, gains file, one of `quadcore.controllers`, or your
         own controller as ``MODULE:NAME`` or ``FILE.py[:NAME]``. The search starts at its
         parameters.
@@ -97,7 +97,7 @@ def tune(
     flown = to_list(model), to_list(references)
     judged = to_list(held_out), to_list(held_out_models)
     chosen = None if only is None else to_list(only)
-    problem = Problem(law, *flown, *judged, chosen, engine, vary or {}, shared)
+    problem = Problem(controller, *flown, *judged, chosen, engine, vary or {}, shared)
     return search_gains(problem, budget, shared.progress)
 
 

@@ -20,7 +20,7 @@ from .thesis_figures import KINDS, thesis_figures
 
 PICTURE = re.compile(rf"(commands|damping|(chain|{'|'.join(KINDS)})_[a-z]+)\.png")
 _SIZES = (*STATES, "distance")
-_TOLD = ("max", "rms")
+_REPORTED = ("max", "rms")
 
 
 def write_tables(study: Study, directory: Path) -> List[Path]:
@@ -133,7 +133,7 @@ def size(value: float) -> str:
 def _format_row(row: Row) -> Dict[str, Any]:
     result = {**row.case._asdict(), "steepest": row.steepest, "failure": row.failure}
     if row.difference is not None:
-        result.update({kind: getattr(row.difference, kind) for kind in _TOLD})
+        result.update({kind: getattr(row.difference, kind) for kind in _REPORTED})
     return result
 
 
@@ -152,8 +152,8 @@ def _list_errors(rows: Sequence[Row]) -> Iterable[Sequence[Any]]:
     for row in rows:
         sizes: Sequence[Any] = [""] * len(kinds)
         if row.difference is not None:
-            told = (getattr(row.difference, kind) for kind in _TOLD)
-            sizes = [part[name] for part in told for name in _SIZES]
+            parts = (getattr(row.difference, kind) for kind in _REPORTED)
+            sizes = [part[name] for part in parts for name in _SIZES]
         yield [*row.case[:3], row.steepest, *sizes, row.failure]
 
 

@@ -25,33 +25,33 @@ def away(log, reference):
 
 
 @pytest.fixture(scope="module")
-def folder_of_law(tmp_path_factory):
-    return build(EXAMPLES / "law_plugin", tmp_path_factory.mktemp("law"))
+def plugin_folder(tmp_path_factory):
+    return build(EXAMPLES / "law_plugin", tmp_path_factory.mktemp("controller"))
 
 
 @pytest.fixture
-def urdf_with_law(folder_of_law, tmp_path, monkeypatch):
-    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(folder_of_law))
+def guided_urdf(plugin_folder, tmp_path, monkeypatch):
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(plugin_folder))
     text = qc.read_model("quadrotor", {"sim_slow": 1}).document.text
-    law = plugin("tilt_law", {"rate": 400})
+    controller = plugin("tilt_law", {"rate": 400})
     file = tmp_path / "guided.urdf"
     circle = plugin("reference", {"shape": "circle", "rate": 0.7})
-    file.write_text(with_plugins(text, law, circle))
+    file.write_text(with_plugins(text, controller, circle))
     return file
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_law_built_outside_the_tree_flies_a_circle(engine, urdf_with_law):
+def test_a_controller_built_outside_the_tree_flies_a_circle(engine, guided_urdf):
     circle = qc.references.circle(rate=0.7)
-    sim = qc.Simulation(urdf_with_law, engine=engine)
+    sim = qc.Simulation(guided_urdf, engine=engine)
     sim.set_state(qc.references.start(sim, circle))
     log = sim.run(8.0, log_every=10)
     assert 0 < away(log, circle).max() < 0.1
     assert np.abs(np.diff(log.orientation, axis=0)).max() < 0.01
 
 
-def test_it_goes_on_from_a_snapshot_and_from_upside_down(urdf_with_law):
-    sim = qc.Simulation(urdf_with_law, engine="eigen", spawn=(2, 0, 10, 3.1, 0, 0))
+def test_it_goes_on_from_a_snapshot_and_from_upside_down(guided_urdf):
+    sim = qc.Simulation(guided_urdf, engine="eigen", spawn=(2, 0, 10, 3.1, 0, 0))
     sim.run(0.4)
     snapshot = sim.snapshot()
     expected = sim.run(5.6)
@@ -107,10 +107,10 @@ def test_the_main_job_flies_what_its_settings_say(tmp_path, monkeypatch):
 
     monkeypatch.setitem(spiral.SETTINGS, "duration", 1.0)
     logs = spiral.fly()
-    assert {law for law, _ in logs} == set(spiral.STYLES)
+    assert {controller for controller, _ in logs} == set(spiral.STYLES)
     assert {engine for _, engine in logs} == set(ENGINES)
-    for (law, _), log in logs.items():
-        assert 0 < spiral.tracking_error(log).max() < (1e-3 if law == "geometric" else 0.1)
+    for (controller, _), log in logs.items():
+        assert 0 < spiral.tracking_error(log).max() < (1e-3 if controller == "geometric" else 0.1)
     assert png(spiral.picture(logs)).startswith(b"\x89PNG")
 
 

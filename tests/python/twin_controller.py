@@ -57,7 +57,7 @@ def flat(reference):
     given = [getattr(reference, name) for name in ("velocity", "acceleration", "jerk", "snap")]
     beside = np.zeros((4, 3))
     for _ in range(5):
-        R, w, dw = turning(reference, *(np.array(given) + beside))
+        R, w, dw = turn_reference(reference, *(np.array(given) + beside))
         S, dS = skew(w), skew(dw)
         second = S @ S + dS
         third = S @ second + dS @ S + S @ dS
@@ -70,7 +70,7 @@ def skew(w):
     return np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
 
 
-def turning(reference, v, a, j, s, step=1e-30):
+def turn_reference(reference, v, a, j, s, step=1e-30):
     """The same for a centre of mass with these derivatives."""
     d = 4 * DRAG
 
