@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 from autopilot_files import find_processes, nothing_remains, write_stack  # noqa: F401
-from processes import QUADCORE, ran, refused
+from processes import QUADCORE, run_command, run_refused
 
 import quadcore as qc
 from quadcore.autopilots import Betaflight, Readings, Sticks, read_autopilot
@@ -101,7 +101,9 @@ def test_flights_are_bit_identical_also_side_by_side_and_if_answers_are_lost(tmp
         for file, log in zip((stack, stack, lossy), logs)
     ]
     assert [flight.wait(120) for flight in flights] == [0, 0, 0]
-    ran("run", *arguments, "--reference", "step:dx=1", "--controller", stack, "--log", logs[0])
+    run_command(
+        "run", *arguments, "--reference", "step:dx=1", "--controller", stack, "--log", logs[0]
+    )
     assert logs[0].read_bytes() == logs[1].read_bytes() == logs[2].read_bytes()
 
 
@@ -123,7 +125,7 @@ def test_a_broken_autopilot_ends_the_flight_with_one_line(tmp_path, fault, reaso
 
 def test_a_killed_autopilot_is_exit_status_3(tmp_path):
     stack = write_stack(tmp_path, "die=2.1")
-    done = ran(
+    done = run_command(
         *["run", "iris", "--engine", "eigen", "--dt", "0.001", "--controller", str(stack)],
         *["--reference", "hover", "--duration", "2", "--quiet"],
     )
@@ -180,7 +182,7 @@ def test_parameters_are_written_and_read_back(tmp_path):
 
 
 def test_the_thesis_quadrotor_is_refused_by_its_tag(tmp_path):
-    done = refused("run", "quadrotor", "--controller", str(write_stack(tmp_path)), "--quiet")
+    done = run_refused("run", "quadrotor", "--controller", str(write_stack(tmp_path)), "--quiet")
     assert "<reactionTorque> is thesis" in done
     assert "--set drone_plugin.reactionTorque=opposing" in done
 
@@ -204,7 +206,7 @@ def test_an_evaluation_is_bit_identical(tmp_path):
     stack = write_stack(tmp_path)
     tables = []
     for name in ("first", "second"):
-        done = ran(
+        done = run_command(
             *["evaluate", "--model", "iris", "--controller", f"geometric,{stack}"],
             *["--reference", "hover", "--duration", "0.4", "--dt", "0.001", "--seeds", "2"],
             *["--out", str(tmp_path / name), "--no-plots", "--quiet"],

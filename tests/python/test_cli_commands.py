@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -119,6 +120,16 @@ def test_doctor_prints_every_check_with_its_remedy(capsys, monkeypatch):
     assert states["engine gazebo11"]["state"] == states["numpy"]["state"] == "ok"
     assert states["C++ compiler"]["state"] == "absent"
     assert "apt install g++" in states["C++ compiler"]["text"]
+
+
+def test_doctor_and_the_installation_page_list_every_extra():
+    root = Path(__file__).resolve().parents[2]
+    lines = (root / "pyproject.toml").read_text().partition("[project.optional-dependencies]")[2]
+    extras = set(re.findall(r"^(\w+) = \[", lines.partition("\n[")[0], re.MULTILINE))
+    extras -= {"docs", "test"}
+    assert {extra for extra, _ in doctor._OPTIONAL.values()} == extras - {"all"}
+    page = (root / "docs/install.md").read_text()
+    assert set(re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)) == extras
 
 
 def test_doctor_finds_damaged_packages_and_missing_ones(monkeypatch):

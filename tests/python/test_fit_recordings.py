@@ -270,6 +270,48 @@ def test_a_cut_propeller_is_named(tmp_path):
     assert "--sound FILE" in alone
 
 
+FIT = ("fit", "crazyflie", "--log", REP4)
+DAMAGED = (*FIT, "--free", "rotors.factor", "--sound", REP11)
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (
+            (*FIT, "--engine", "ode"),
+            "--engine does not apply to a fit of several logs or recordings",
+        ),
+        ((*FIT, "--dt", "0.002"), "--dt does not apply"),
+        ((*FIT, "--horizon", "1"), "--horizon does not apply"),
+        ((*FIT, "--force"), "--force does not apply to a fit without --judge"),
+        ((*DAMAGED, "--judge", REP11), "--judge does not apply to --free rotors.factor"),
+        ((*DAMAGED, "--bound", "frame.mass=0:1"), "--bound does not apply"),
+        ((*DAMAGED, "--engine", "gazebo11"), "--engine does not apply"),
+        ((*DAMAGED, "--horizon", "0.5"), "--horizon does not apply"),
+        (("fit", "crazyflie", "--log", "log.csv", "--sound", REP11), "--sound does not apply"),
+    ],
+)
+def test_options_without_effect_on_a_fit_are_refused(words, message, tmp_path, monkeypatch):
+    qc.Simulation("crazyflie", engine="eigen").run(0.1, topics=["vel_cmd"]).to_csv(
+        tmp_path / "log.csv"
+    )
+    monkeypatch.chdir(tmp_path)
+    refused = run_refused(*words, "-o", "fitted.urdf")
+    assert message in refused and refused.endswith("Remove it.\n")
+
+
+def test_an_output_that_ends_in_urdf_is_the_model_of_a_judged_fit(tmp_path):
+    done = run_command(
+        *FIT, "--judge", REP11, "--force", "--free", "inputs.speed", "--out",
+        tmp_path / "fitted.urdf",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert qc.Simulation(tmp_path / "fitted.urdf", engine="eigen").rotor_count == 4
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["fitted.inputs.yaml", "fitted.urdf"]
+    both = run_refused(*FIT, "-o", tmp_path / "a.urdf", "--out", tmp_path / "b.urdf")
+    assert "name two models. Give one of them." in both
+
+
 def test_a_recording_without_rates_cannot_be_fitted():
     with pytest.raises(qc.InputError, match="neither rates nor an orientation"):
         prepare_flight(CRAZYPAD / "normal_flight_E8_log00_excerpt.gz")

@@ -117,7 +117,8 @@ def test_the_page_of_a_flight_shows_its_rows(tmp_path):
       close() {{}}
     }};</script>"""
     found = run_script_when_ready(page.replace("<head>", "<head>" + source, 1), script, tmp_path)
-    assert len(rows) == 1 + 1000 // 17 and found["rows"] == len(rows)
+    assert len(rows) == 1 + 1000 // 17 + 1 and found["rows"] == len(rows)
+    assert rows[-1][1] == 1.0
     assert found["end"] == found["time"] == pytest.approx(rows[-1][1])
     assert found["state"] == "the flight has ended"
     assert found["plots"] == ["Height (m)", "Rotor speed (rad/s)"]
@@ -138,8 +139,54 @@ def test_run_shows_the_flight_and_waits_for_the_page(tmp_path):
         assert process.wait(60) == 0
     rows = [row for line in text.splitlines() if line.startswith("data: {\"flight\"")
             for row in json.loads(line[6:])["rows"]]  # fmt: skip
-    assert rows[0][0] == 0 and 0.48 < rows[-1][0] <= 0.5
+    assert rows[0][0] == 0 and rows[-1][0] == 0.5
     assert len({row[0] for row in rows}) == len(rows)
+
+
+def test_a_page_that_reads_slowly_gets_the_tail_of_a_fast_flight():
+    server = PageServer("<html></html>")
+    server.append([[float(i)] * 30 for i in range(100_000)])
+    server.end()
+    events = ask(server, "/events")
+    events.read(100)
+    waiting = threading.Thread(target=server.wait_for_pages, args=(0.0,))
+    waiting.start()
+    waiting.join(0.5)
+    assert waiting.is_alive()
+    assert b"event: end" in events.read()
+    waiting.join(20)
+    assert not waiting.is_alive()
+    server.close()
+
+
+def test_a_flight_that_fails_waits_for_its_page(tmp_path):
+    (tmp_path / "quits.py").write_text(
+        "def controller(t, state, reference):\n    return [471, -471, 471, -471][: 4 - (t > 0.3)]\n"
+    )
+    command = [sys.executable, "-m", "quadcore", "run", "quadrotor", "--engine", "eigen"]
+    flight = ["--duration", "0.5", "--controller", "quits.py", "--live", "--pace", "0"]
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "BROWSER")}
+    with subprocess.Popen(
+        [*command, *flight], env=environment, cwd=str(tmp_path),
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    ) as process:  # fmt: skip
+        url = next(line for line in process.stderr if "live view" in line).split()[-1]
+        with urllib.request.urlopen(url + "events", timeout=60) as events:
+            text = events.read().decode()
+        assert process.wait(60) == 3
+    assert "event: end" in text and '"rows": [[0.0' in text
+
+
+def test_a_live_view_opens_after_all_inputs_were_checked(tmp_path):
+    page = tmp_path / "opened"
+    browser = f"{sys.executable} -c \"open('{page}', 'w')\" %s"
+    command = [sys.executable, "-m", "quadcore", "run", "quadrotor", "--live", "--duration", "0.01"]
+    done = subprocess.run(
+        [*command, "--log", "log.txt"], env={**os.environ, "BROWSER": browser}, cwd=str(tmp_path),
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2 and "log.txt" in done.stderr
+    assert "live view" not in done.stderr and not page.exists()
 
 
 def test_play_serves_a_page_until_it_is_stopped(tmp_path):
@@ -175,6 +222,16 @@ def test_a_view_of_a_simulation_has_each_state_that_was_synchronised(tmp_path):
         shown.sync()
     assert f'src="{shown.url}"' in shown._repr_html_()
     shown.close()
+
+
+def test_a_view_begins_with_the_camera_that_is_given():
+    simulation = qc.Simulation("quadrotor", engine="eigen")
+    for shown in (simulation, flown()):
+        seen = qc.view(shown, camera="top", browser=False)
+        assert content_of(ask(seen._server).read().decode())["camera"] == "top"
+        seen.close()
+        with pytest.raises(qc.InputError, match="camera 'nose' is unknown"):
+            qc.view(shown, camera="nose", browser=False)
 
 
 def test_a_view_of_logs_is_a_page_in_notebooks_with_a_picture(tmp_path):

@@ -155,6 +155,21 @@ def test_decoding_goes_on_behind_damage(tmp_path):
     assert len(rates.time) == len(ROWS) - 1
 
 
+@pytest.mark.parametrize(
+    "entry",
+    [
+        "gyro_scale:0xzz", "gyro_scale:0x7f800000", "minthrottle:\N{SUPERSCRIPT TWO}",
+        "motorOutput:a,b", "vbatref:1.5", "motor_poles:0", "acc_1G:0",
+    ],
+)  # fmt: skip
+def test_a_damaged_entry_of_a_blackbox_header_is_refused_in_one_line(tmp_path, entry):
+    name, _, text = entry.partition(":")
+    data = make_blackbox(ROWS, header=[entry]).replace("\N{SUPERSCRIPT TWO}".encode(), b"\xb2")
+    message = refusal(save(tmp_path / "a.bbl", data))
+    assert f"a.bbl: the header of the blackbox log is damaged: {name} is '{text}'" in message
+    assert message.endswith("Download the log again.")
+
+
 def test_a_truncated_blackbox_log_keeps_its_whole_frames(tmp_path):
     data = make_blackbox(ROWS)
     with pytest.warns(qc.QuadcoreWarning, match="damaged"):
@@ -177,8 +192,8 @@ def test_the_longest_of_several_flights_is_read(tmp_path):
 
 def test_encodings_match_the_examples_of_the_documentation():
     assert write_unsigned(23456) == b"\xa0\xb7\x01"
-    assert Reader(b"\xa0\xb7\x01", 0).unsigned() == 23456
-    assert [Reader(bytes([n]), 0).signed() for n in range(5)] == [0, -1, 1, -2, 2]
+    assert Reader(b"\xa0\xb7\x01", 0).read_unsigned() == 23456
+    assert [Reader(bytes([n]), 0).read_signed() for n in range(5)] == [0, -1, 1, -2, 2]
     assert ENCODINGS[6](Reader(b"\x14\x08\x10", 0), 5) == [0, 0, 4, 0, 8]
     assert ENCODINGS[8](Reader(b"\x52\x0d\x42", 0), 4) == [13, 0, 4, 2]
 

@@ -25,13 +25,16 @@ _OK, _ABSENT, _WRONG = "ok", "absent", "wrong"
 _NEEDED = ("numpy", "scipy", "rich", "xacro", "rospkg", "yaml", "jinja2")
 """Modules that quadcore cannot do without."""
 
-_PACKAGES = {"yaml": "pyyaml"}
+_PACKAGES = {"collada": "pycollada", "yaml": "pyyaml"}
 """Names of packages that differ from those of their modules."""
 
 _OPTIONAL = {
     "rosbags": ("bag", "reads and writes .bag files"),
+    "pyulog": ("ulog", "reads .ulg files of PX4"),
     "gymnasium": ("gym", "runs reinforcement learning environments"),
     "h5py": ("matlab", "reads .mat files of version 7.3"),
+    "trimesh": ("mesh", "draws the meshes of a model"),
+    "collada": ("mesh", "draws COLLADA meshes"),
     "cma": ("tune", "searches in quadcore tune"),
     "pyarrow": ("sweep", "writes .parquet files"),
     "SALib": ("sweep", "draws Sobol and Morris designs"),

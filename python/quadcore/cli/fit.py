@@ -18,7 +18,7 @@ from ..studies.output_folder import output_folder
 from ..support import parse
 from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, reading, terminal
-from .fit_recordings import DAMAGE, fit_damage, fit_real_flights
+from .fit_recordings import DAMAGE, fit_damage, fit_real_flights, refuse_options
 from .interrupted_output import keep_partial_output
 from .parser import add_command, find_group
 from .predict import add_force
@@ -102,14 +102,12 @@ def register(commands: Any) -> None:
         "--horizon",
         metavar="S",
         type=parse.positive,
-        default=1.0,
         help="length of the compared segments in seconds (default: 1)",
     )
     study.add_argument(
         "--shift",
         metavar="S",
         type=parse.not_negative,
-        default=0.0,
         help="maximum delay in seconds of the measurements behind the commands, which is "
         "identified too (default: 0)",
     )
@@ -152,7 +150,10 @@ def _fit_log(arguments: argparse.Namespace, out: Path, folder: Optional[Path]) -
     from ..studies.fit import fit
     from ..studies.fit.output import write_fit
 
+    refuse_options(arguments, ("sound", "force"), "a fit of one log of quadcore")
     shared = reading.read_model_arguments(arguments)
+    lengths = {name: getattr(arguments, name) for name in ("horizon", "shift")}
+    shared.update((name, value) for name, value in lengths.items() if value is not None)
 
     def write_model(model: Any) -> None:
         with atomic_write(out) as stream:
@@ -167,11 +168,9 @@ def _fit_log(arguments: argparse.Namespace, out: Path, folder: Optional[Path]) -
             arguments.free or [],
             commands=arguments.commands,
             engine=arguments.engine,
-            horizon=arguments.horizon,
             channels=arguments.channels,
             sensed=arguments.sensed,
             bounds=_read_all_bounds(arguments),
-            shift=arguments.shift,
             world=arguments.world,
             dt=arguments.dt,
             progress=progress,
@@ -186,8 +185,10 @@ def _fit_log(arguments: argparse.Namespace, out: Path, folder: Optional[Path]) -
 
 
 def _find_model_file(arguments: argparse.Namespace, folder: Optional[Path]) -> Path:
-    """Return the file of the fitted model; ``--out`` was its only option once."""
+    """Return the file of the fitted model: -o, an --out that ends in .urdf, or in the folder."""
     out: Optional[Path] = arguments.o
+    if out is not None and arguments.out is not None and folder is None:
+        raise InputError(f"-o {out}, --out {arguments.out}: name two models. Give one of them.")
     if out is None:
         out = arguments.out if folder is None else folder / "fitted.urdf"
     if out is None:

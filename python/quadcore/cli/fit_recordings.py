@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Dict, Optional, Tuple
+from typing import Dict, Optional, Sequence, Tuple
 
 from .._core import InputError
 from ..model.description import read_world
+from ..simulation.engines import STUDY_ENGINE
 from ..support.output_files import atomic_write, encode_text
 from . import reading, terminal
 
@@ -15,6 +16,8 @@ DAMAGE = "rotors.factor"
 """Name of the free parameter that is the thrust of each rotor."""
 
 _FACTORS = "rotorFactors"
+_OF_LOGS = ("commands", "sensed", "channels", "shift", "horizon", "engine", "dt")
+"""Options of a fit of one log of quadcore."""
 
 
 def fit_real_flights(
@@ -41,7 +44,9 @@ def fit_real_flights(
     from ..studies.fit.recorded import fit_recordings
     from .flight_tables import show_fit, show_flights, show_judgement
 
-    _refuse_options(arguments)
+    refuse_options(arguments, (*_OF_LOGS, "sound"), "a fit of several logs or recordings")
+    if not arguments.judge:
+        refuse_options(arguments, ("force",), "a fit without --judge")
     shared = reading.read_model_arguments(arguments)
     with terminal.show_progress(arguments.quiet, "fitting") as progress:
         fit = fit_recordings(
@@ -81,15 +86,16 @@ def fit_damage(arguments: argparse.Namespace, out: Path, folder: Optional[Path])
     from ..studies.fit.prepared import read_flight
     from ..studies.fit.rotor_factors import find_rotor_factors
 
+    refuse_options(arguments, (*_OF_LOGS, "judge", "bound", "force"), f"--free {DAMAGE}")
     if not arguments.sound:
         raise InputError(
-            "free rotors.factor: name recordings of the undamaged vehicle with --sound FILE."
+            f"free {DAMAGE}: name recordings of the undamaged vehicle with --sound FILE."
         )
     shared = reading.read_model_arguments(arguments)
     fitted = FittedModel(
         [],
         shared["model"],
-        "eigen",
+        STUDY_ENGINE,
         arguments.world,
         None,
         shared["parameters"],
@@ -98,7 +104,7 @@ def fit_damage(arguments: argparse.Namespace, out: Path, folder: Optional[Path])
     )
     plugin = find_plugin(fitted, _FACTORS)
     if plugin is None:
-        raise InputError(f"free rotors.factor: the model has no plugin with the tag {_FACTORS}.")
+        raise InputError(f"free {DAMAGE}: the model has no plugin with the tag {_FACTORS}.")
     found = find_rotor_factors(
         [read_flight(log, arguments.mapping) for log in arguments.log],
         [read_flight(log, arguments.mapping) for log in arguments.sound],
@@ -147,15 +153,9 @@ def fit_damage(arguments: argparse.Namespace, out: Path, folder: Optional[Path])
     terminal.print_written(written)
 
 
-def _refuse_options(arguments: argparse.Namespace) -> None:
-    """Refuse options that only logs of quadcore have."""
-    given = {
-        "--commands": arguments.commands is not None,
-        "--sensed": arguments.sensed is not None,
-        "--channels": arguments.channels is not None,
-        "--shift": arguments.shift != 0,
-        "--sound": bool(arguments.sound),
-    }
-    for name, is_given in given.items():
-        if is_given:
-            raise InputError(f"{name} does not apply to a fit of several logs or recordings.")
+def refuse_options(arguments: argparse.Namespace, names: Sequence[str], what: str) -> None:
+    """Refuse options without effect on a fit; the engine of all studies is allowed."""
+    for name in names:
+        value = getattr(arguments, name)
+        if value not in (None, [], False) and (name, value) != ("engine", STUDY_ENGINE):
+            raise InputError(f"--{name} does not apply to {what}. Remove it.")

@@ -100,15 +100,15 @@ def _run(arguments: argparse.Namespace) -> None:
         steps = count_steps(plan.duration, simulation.dt)
         drawn = DecimatedRows(1 + steps // plan.log_every, columns, terms)
         others.append(drawn)
-    view = _open_view(arguments, plan, simulation, columns) if arguments.live else None
-    if view is not None:
-        others.append(view)
     files = _check_log_files(arguments)
     logs = [make_log_file(file, columns, terms, simulation.ignored) for file in files]
-    recording = Recording(logs, others)
     described = []
     if out is not None:
         described = run_folder.write_description(arguments, plan, simulation)
+    view = _open_view(arguments, plan, simulation, columns) if arguments.live else None
+    if view is not None:
+        others.append(view)
+    recording = Recording(logs, others)
     started = time.perf_counter()
     try:
         with terminal.show_progress(arguments.quiet) as progress, convert_controller_errors(
@@ -126,10 +126,12 @@ def _run(arguments: argparse.Namespace) -> None:
                 plan.topics,
                 _choose_pace(arguments),
             )
-    except (QuadcoreError, KeyboardInterrupt, MemoryError):
+    except (QuadcoreError, KeyboardInterrupt, MemoryError) as error:
         with interrupts.hold_signals():
             for file in recording.close():
                 terminal.print_message(f"log until t = {fastest.time:.6g} s: {file}")
+        if view is not None and isinstance(error, QuadcoreError):
+            view.page.wait_for_pages(_PATIENCE)
         raise
     elapsed = time.perf_counter() - started
     with interrupts.hold_signals():

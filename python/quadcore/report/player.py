@@ -152,6 +152,7 @@ def make_live_page(
     world: DrawnWorld,
     url: str,
     speed_limit: float = math.inf,
+    camera: str = CAMERAS[0],
 ) -> str:
     """Make a page that shows a flight while it goes on.
 
@@ -167,6 +168,8 @@ def make_live_page(
         Address of the rows, as server-sent events with the columns of `list_columns`.
     speed_limit
         Maximum rotor joint speed, rad/s.
+    camera
+        As for `make_page`.
     """
     numbers = Numbers()
     packed: Dict[str, Any] = {
@@ -183,7 +186,7 @@ def make_live_page(
     packed["order"] = list(packed["columns"])  # of the columns in each row
     packed["speed_limit"] = _or_none(speed_limit)
     content = {
-        **_describe_world(world, CAMERAS[0], numbers),
+        **_describe_world(world, camera, numbers),
         "vehicles": [pack_vehicle(vehicle, numbers)],
         "flights": [packed],
         "plots": [],

@@ -10,6 +10,7 @@ import numpy as np
 from .._core import Model
 from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
+from ..report.cameras import CAMERAS
 from ..report.page_server import EVENTS, PageServer
 from ..report.player import list_columns, make_live_page
 from .log import Log
@@ -34,6 +35,8 @@ class LiveView:
         Steps between two rows.
     every : int, optional
         Rows per row that is sent; default: as many as leave 60 rows per simulated second.
+    camera : str
+        Camera at the start.
     """
 
     wrenches = False
@@ -45,10 +48,12 @@ class LiveView:
         model: Optional[Model] = None,
         log_every: int = 1,
         every: Optional[int] = None,
+        camera: str = CAMERAS[0],
     ) -> None:
         self._columns = list(columns)
         self._every = every or max(1, round(1 / (_RATE * simulation.dt * log_every)))
         self._seen = 0
+        self._last: Optional[np.ndarray] = None  # a row that the page does not have yet
         vehicle = read_vehicle(model or simulation.model)
         empty = Log.of_rows(np.zeros((0, len(self._columns))), self._columns, {})
         self.page = PageServer(
@@ -59,6 +64,7 @@ class LiveView:
                 draw_world(simulation.world),
                 EVENTS,
                 find_speed_limit(simulation.rotors),
+                camera,
             )
         )
 
@@ -68,9 +74,13 @@ class LiveView:
         self._seen += len(table)
         if len(picked):
             self.page.append(make_rows(picked, self._columns))
+        if len(table):
+            self._last = table[-1:].copy() if (self._seen - 1) % self._every else None
 
     def close(self) -> None:
-        """Send the page the end of the flight."""
+        """Send the page the last row and the end of the flight."""
+        if self._last is not None:
+            self.page.append(make_rows(self._last, self._columns))
         self.page.end()
 
 

@@ -155,6 +155,8 @@ class Recording:
 
     def close(self) -> List[Path]:
         """Close all recorders, and return the files that contain the flight."""
+        for recorder in self._others:
+            recorder.close()
         self._try_each(lambda file: file.close())
         return [file.path for file in self._files]
 

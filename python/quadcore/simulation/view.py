@@ -55,7 +55,7 @@ class View:
             self._vehicle: Optional[DrawnVehicle] = read_vehicle(shown.model)
             self._world = draw_world(shown.world)
             self._rows = Rows(shown, columns)
-            self._live = LiveView(shown, columns, every=1)
+            self._live = LiveView(shown, columns, every=1, camera=camera)
             self._server = self._live.page
             self.sync()
         else:

@@ -11,17 +11,17 @@ class Reader:
     def __init__(self, data: bytes, at: int) -> None:
         self.data, self.at = data, at
 
-    def byte(self) -> int:
+    def read_byte(self) -> int:
         """Read a byte."""
         value = self.data[self.at]
         self.at += 1
         return value
 
-    def unsigned(self) -> int:
+    def read_unsigned(self) -> int:
         """Read seven bits of each byte until one without the highest bit."""
         value = shift = 0
         while True:
-            byte = self.byte()
+            byte = self.read_byte()
             value |= (byte & 0x7F) << shift
             if byte < 0x80:
                 return value
@@ -29,12 +29,12 @@ class Reader:
             if shift > 28:
                 raise ValueError("a number has more than 32 bits")
 
-    def signed(self) -> int:
+    def read_signed(self) -> int:
         """Read a number with alternating signs: 0, -1, 1, -2 and so on."""
-        value = self.unsigned()
+        value = self.read_unsigned()
         return (value >> 1) ^ -(value & 1)
 
-    def little(self, size: int) -> int:
+    def read_little(self, size: int) -> int:
         """Read a signed number of some bytes, the lowest first."""
         end = self.at + size
         if end > len(self.data):
@@ -50,15 +50,15 @@ def _extend(value: int, bits: int) -> int:
 
 
 def _read_unsigned(reader: Reader, count: int) -> List[int]:
-    return [reader.unsigned()]
+    return [reader.read_unsigned()]
 
 
 def _read_signed(reader: Reader, count: int) -> List[int]:
-    return [reader.signed()]
+    return [reader.read_signed()]
 
 
 def _read_negated(reader: Reader, count: int) -> List[int]:
-    return [-_extend(reader.unsigned() & 0x3FFF, 14)]
+    return [-_extend(reader.read_unsigned() & 0x3FFF, 14)]
 
 
 def _read_nothing(reader: Reader, count: int) -> List[int]:
@@ -66,42 +66,42 @@ def _read_nothing(reader: Reader, count: int) -> List[int]:
 
 
 def _read_tagged(reader: Reader, count: int) -> List[int]:
-    """Read up to 8 numbers: a bit of the first byte tells which are not 0."""
+    """Read up to 8 numbers: a bit of the first byte shows which are not 0."""
     if count == 1:
-        return [reader.signed()]
-    tag = reader.byte()
-    return [reader.signed() if tag >> i & 1 else 0 for i in range(count)]
+        return [reader.read_signed()]
+    tag = reader.read_byte()
+    return [reader.read_signed() if tag >> i & 1 else 0 for i in range(count)]
 
 
 def _read_three(reader: Reader, count: int) -> List[int]:
-    first = reader.byte()
+    first = reader.read_byte()
     kind = first >> 6
     if kind == 0:
         return [_extend(first >> shift & 3, 2) for shift in (4, 2, 0)]
     if kind == 1:
-        second = reader.byte()
+        second = reader.read_byte()
         return [_extend(part, 4) for part in (first & 15, second >> 4, second & 15)]
     if kind == 2:
-        return [_extend(part & 63, 6) for part in (first, reader.byte(), reader.byte())]
+        return [_extend(part & 63, 6) for part in (first, reader.read_byte(), reader.read_byte())]
     return _read_sized(reader, first)
 
 
 def _read_sized(reader: Reader, tag: int) -> List[int]:
-    return [reader.little(1 + (tag >> shift & 3)) for shift in (0, 2, 4)]
+    return [reader.read_little(1 + (tag >> shift & 3)) for shift in (0, 2, 4)]
 
 
 def _read_three_variable(reader: Reader, count: int) -> List[int]:
     """Read three numbers of 2, 2, 2 or 5, 5, 4 or 8, 7, 7 bits, or of whole bytes."""
-    first = reader.byte()
+    first = reader.read_byte()
     kind = first >> 6
     if kind == 3:
         return _read_sized(reader, first)
     if kind == 0:
         widths, packed = (2, 2, 2), first
     elif kind == 1:
-        widths, packed = (5, 5, 4), first << 8 | reader.byte()
+        widths, packed = (5, 5, 4), first << 8 | reader.read_byte()
     else:
-        widths, packed = (8, 7, 7), first << 16 | reader.byte() << 8 | reader.byte()
+        widths, packed = (8, 7, 7), first << 16 | reader.read_byte() << 8 | reader.read_byte()
     _, b, c = widths
     parts = (packed >> b + c, packed >> c, packed)
     return [_extend(part & ((1 << bits) - 1), bits) for part, bits in zip(parts, widths)]
@@ -109,7 +109,7 @@ def _read_three_variable(reader: Reader, count: int) -> List[int]:
 
 def _read_four(reader: Reader, count: int) -> List[int]:
     """Read four numbers of 0, 4, 8 or 16 bits, as a stream of half bytes."""
-    tag = reader.byte()
+    tag = reader.read_byte()
     sizes = [(0, 1, 2, 4)[tag >> shift & 3] for shift in (0, 2, 4, 6)]
     whole = (sum(sizes) + 1) // 2
     end = reader.at + whole

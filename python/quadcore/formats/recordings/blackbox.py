@@ -5,6 +5,8 @@ The page "Blackbox logging internals" of Betaflight documents frames, predictors
 
 from __future__ import annotations
 
+import math
+import re
 import struct
 from pathlib import Path
 from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
@@ -12,6 +14,7 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from ..._core import InputError
+from ...support.arguments import shorten
 from ...support.warning import warn
 from .bits import ENCODINGS, GROUPS, Reader
 from .series import Columns, make_columns
@@ -128,7 +131,7 @@ def _read_frames(path: Path, data: bytes, session: _Session) -> Tuple[List[List[
     lost = 0
     while reader.at < len(data):
         begin = reader.at
-        kind = chr(reader.byte())
+        kind = chr(reader.read_byte())
         try:
             if kind == "E":
                 if not _skip_event(reader):
@@ -153,13 +156,13 @@ def _read_frames(path: Path, data: bytes, session: _Session) -> Tuple[List[List[
 
 def _skip_event(reader: Reader) -> bool:
     """Skip an event; returns whether the log goes on."""
-    kind = reader.byte()
+    kind = reader.read_byte()
     if kind == _END and reader.data[reader.at : reader.at + len(_END_TEXT)] == _END_TEXT:
         return False
     if kind not in _EVENTS:
         raise ValueError("the event is unknown")
     for _ in range(_EVENTS[kind]):
-        reader.unsigned()
+        reader.read_unsigned()
     return True
 
 
@@ -190,10 +193,10 @@ class _Predictors:
         self._loop = names.index("loopIteration")
         self._interval = _read_interval(path, header)
         self._fixed = {
-            4: _read_number(header, "minthrottle"),
+            4: _read_number(path, header, "minthrottle"),
             8: 1500,
-            9: _read_number(header, "vbatref"),
-            11: _read_number(header, "motorOutput"),
+            9: _read_number(path, header, "vbatref"),
+            11: _read_number(path, header, "motorOutput"),
         }
 
     def complete(
@@ -260,19 +263,41 @@ def _read_interval(path: Path, header: Mapping[str, str]) -> Tuple[int, int, int
     return interval
 
 
-def _read_number(header: Mapping[str, str], name: str, fallback: int = 0) -> int:
-    first = header.get(name, "").split(",")[0]
-    return int(first) if first.lstrip("-").isdigit() else fallback
+def _read_numbers(path: Path, header: Mapping[str, str], name: str) -> List[int]:
+    """Return the whole numbers of an entry; none without the entry."""
+    text = header.get(name, "")
+    parts = text.split(",") if text else []
+    if not all(re.fullmatch("-?[0-9]+", part.strip()) for part in parts):
+        raise _make_error(path, name, text)
+    return [int(part) for part in parts]
+
+
+def _read_number(path: Path, header: Mapping[str, str], name: str, fallback: int = 0) -> int:
+    return (_read_numbers(path, header, name) or [fallback])[0]
+
+
+def _read_divisor(path: Path, header: Mapping[str, str], name: str, fallback: int) -> int:
+    number = _read_number(path, header, name, fallback)
+    if number < 1:
+        raise _make_error(path, name, header[name])
+    return number
+
+
+def _make_error(path: Path, name: str, text: str) -> InputError:
+    return InputError(
+        f"{path}: the header of the blackbox log is damaged: {name} is {shorten(text)}. "
+        "Download the log again."
+    )
 
 
 def _scale_columns(
     path: Path, columns: Mapping[str, np.ndarray], header: Mapping[str, str]
 ) -> Dict[str, np.ndarray]:
     scaled = dict(columns)
-    gyro = _read_gyro_scale(header)
-    one_g = _read_number(header, "acc_1G", 1)
-    low, high = _read_motor_range(header)
-    poles = _read_number(header, "motor_poles", 14)
+    gyro = _read_gyro_scale(path, header)
+    one_g = _read_divisor(path, header, "acc_1G", 1)
+    low, high = _read_motor_range(path, header)
+    poles = _read_divisor(path, header, "motor_poles", 14)
     for name, values in columns.items():
         if name.startswith("gyroADC"):
             scaled[name] = values * gyro
@@ -285,16 +310,22 @@ def _scale_columns(
     return scaled
 
 
-def _read_gyro_scale(header: Mapping[str, str]) -> float:
+def _read_gyro_scale(path: Path, header: Mapping[str, str]) -> float:
     """Return deg/s for each unit of the gyro; the header contains the bits of a float."""
-    text = header.get("gyro_scale", header.get("gyro.scale", ""))
+    name = "gyro_scale" if "gyro_scale" in header else "gyro.scale"
+    text = header.get(name, "")
     if not text.startswith("0x"):
         return 1.0
-    return float(struct.unpack("<f", struct.pack("<I", int(text, 16) & 0xFFFFFFFF))[0])
+    if not re.fullmatch("0x[0-9a-fA-F]{1,8}", text):
+        raise _make_error(path, name, text)
+    scale = float(struct.unpack("<f", struct.pack("<I", int(text, 16)))[0])
+    if not math.isfinite(scale):
+        raise _make_error(path, name, text)
+    return scale
 
 
-def _read_motor_range(header: Mapping[str, str]) -> Tuple[int, int]:
-    given = header.get("motorOutput", "").split(",")
+def _read_motor_range(path: Path, header: Mapping[str, str]) -> Tuple[int, int]:
+    given = _read_numbers(path, header, "motorOutput")
     if len(given) == 2:
-        return int(given[0]), int(given[1])
-    return _read_number(header, "minthrottle"), _read_number(header, "maxthrottle")
+        return given[0], given[1]
+    return _read_number(path, header, "minthrottle"), _read_number(path, header, "maxthrottle")

@@ -51,7 +51,7 @@ def compute_poles(controller: BuiltInController, simulation: Simulation) -> List
 
     Parameters
     ----------
-    law
+    controller
         Controller for which `has_poles` is true.
     simulation
         Vehicle and engine; its state changes.
