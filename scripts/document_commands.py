@@ -75,8 +75,9 @@ EXAMPLES = {
         "  --xacro sim_slow:=1 --out out/measured",
         "The bag is that of a simulated flight, so that both rows of `pd` agree. See "
         "[measure recorded flights](../measure.md).",
-        before="quadcore run quadrotor --engine eigen --xacro sim_slow:=1 --controller pd \\\n"
-        "  --reference circle --duration 10 --log-every 10 --log flight.bag --quiet",
+        before="QUADCORE_SHORT=no quadcore run quadrotor --engine eigen --xacro sim_slow:=1 \\\n"
+        "  --controller pd --reference circle --duration 10 --log-every 10 \\\n"
+        "  --log flight.bag --quiet",
     ),
     "sweep": Example(
         "quadcore sweep --controller geometric --reference circle \\\n"
