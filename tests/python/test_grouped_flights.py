@@ -141,7 +141,9 @@ def test_an_evaluation_does_not_depend_on_groups(monkeypatch):
         "xacro_args": {"sim_slow": 1},
     }
     together = qc.evaluate(["geometric", "pd"], ["spiral", "step"], **options)
-    monkeypatch.setattr("quadcore.studies.evaluate.evaluate.share_out", lambda rows, _: [])
+    monkeypatch.setattr(
+        "quadcore.studies.evaluate.evaluate.share_out", lambda rows, _: [[i] for i in rows]
+    )
     alone = qc.evaluate(["geometric", "pd"], ["spiral", "step"], **options)
     np.testing.assert_equal(together.table, alone.table)
 

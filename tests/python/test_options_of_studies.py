@@ -19,7 +19,7 @@ STUDIES = {
     "evaluate": (qc.evaluate, options.EvaluateOptions),
     "compare": (qc.compare, options.CompareOptions),
     "sweep": (qc.sweep, options.SweepOptions),
-    "tune": (qc.tune, options.Options),
+    "tune": (qc.tune, options.ControlOptions),
 }
 GUIDED = ["--controller", "pd", "--reference", "hover"]
 WORDS = {
@@ -41,9 +41,14 @@ def rows():
 
 
 def test_type_checkers_see_the_options_that_there_are():
-    declared = {each.name: each.type for each in fields(options.Options)}
-    keywords = options.Keywords.__annotations__
-    assert declared == {name: kind.__forward_arg__ for name, kind in keywords.items()}
+    inherited: dict = {}
+    for kind, keywords in (
+        (options.Options, options.Keywords),
+        (options.ControlOptions, options.ControlKeywords),
+    ):
+        declared = {each.name: each.type for each in fields(kind)}
+        inherited.update(keywords.__annotations__)
+        assert declared == {name: kind.__forward_arg__ for name, kind in inherited.items()}
 
 
 @pytest.mark.parametrize("study", STUDIES)

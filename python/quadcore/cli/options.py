@@ -28,6 +28,7 @@ from ..studies.options import (
     explain,
 )
 from ..support import parse
+from ..support.arguments import FLAG
 from ..support.values import Number
 from .parser import complete_from, find_group
 
@@ -84,6 +85,11 @@ def add_options(
     for each in fields(kind):
         about: OptionInfo = each.metadata["about"]
         if not about.flag or (names and each.name not in names):
+            continue
+        if about.kind is FLAG:
+            find_group(parser, about.group).add_argument(
+                f"--{about.flag}", action="store_true", help=about.meaning
+            )
             continue
         default = defaults.get(each.name, each.default)
         more = {"action": "append", "default": []} if about.repeats else {"default": default}

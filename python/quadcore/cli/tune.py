@@ -11,7 +11,7 @@ from ..control import controllers, gains
 from ..model import resources
 from ..simulation.engines import STUDY_ENGINE
 from ..studies.flight_folder import DOCUMENT
-from ..studies.options import CONTROLLER, OUTPUT, STUDY, VEHICLE, Options
+from ..studies.options import CONTROLLER, OUTPUT, STUDY, VEHICLE, ControlOptions
 from ..studies.output_folder import output_folder
 from ..support import parse
 from ..support.output_files import check_writable
@@ -99,7 +99,7 @@ def register(commands: Any) -> None:
         help="minimum number of gain sets to try (default: 300)",
     )
     options.add_vary(parser, f", scenario{options.CONTROLLER_KEYS}")
-    options.add_study(parser, Options, STUDY_ENGINE)
+    options.add_study(parser, ControlOptions, STUDY_ENGINE)
 
 
 def tune_controller(arguments: argparse.Namespace) -> None:
@@ -169,7 +169,7 @@ def _make_problem(arguments: argparse.Namespace) -> Problem:
         arguments.only,
         arguments.engine,
         reading.read_axes(arguments),
-        reading.read_options(arguments, Options),
+        reading.read_options(arguments, ControlOptions),
     )
 
 

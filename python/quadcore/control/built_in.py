@@ -10,6 +10,7 @@ import numpy as np
 from .. import _core
 from ..support.parameters import check_values
 from .rate_and_delay import DELAY, RATE, check_rate_or_delay
+from .vehicle import unwrap
 
 
 class BuiltInController:
@@ -57,15 +58,16 @@ class BuiltInController:
 
         Parameters
         ----------
-        simulation : Simulation
-            Simulation that the controller is to command.
+        simulation : Simulation or Vehicle
+            Simulation that the controller is to command, or its view.
 
         Raises
         ------
         InputError
             If the controller does not support the vehicle, or its rate is out of range.
         """
-        vehicle = simulation if self.belief is None else self.belief
+        simulation = unwrap(simulation)
+        vehicle = simulation if self.belief is None else unwrap(self.belief)
         self._controller = _core.Controller(
             self.name, vehicle, simulation, self.parameters, self.spins
         )

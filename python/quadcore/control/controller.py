@@ -54,8 +54,9 @@ class Controller(Protocol):
 
         Parameters
         ----------
-        simulation : Simulation
-            Simulation that the controller is to command.
+        simulation : Simulation or Vehicle
+            Simulation that the controller is to command. In a study, a view of the vehicle: its
+            parameters and sensors.
         """
 
     def close(self) -> None:

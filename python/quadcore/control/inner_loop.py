@@ -11,6 +11,7 @@ import numpy as np
 from .. import _core
 from ..support.arguments import shorten
 from ..support.parameters import check_values, write_docstring
+from .vehicle import unwrap
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -104,8 +105,8 @@ class InnerLoop:
 
         Parameters
         ----------
-        simulation : Simulation
-            Simulation that is commanded.
+        simulation : Simulation or Vehicle
+            Simulation that is commanded, or its view.
         period : float
             Time between two calls, s.
         state : Odometry
@@ -125,7 +126,8 @@ class InnerLoop:
         """
         target, thrust = _check_target(wanted)
         if self._loop is None:
-            vehicle = simulation if self.belief is None else self.belief
+            simulation = unwrap(simulation)
+            vehicle = simulation if self.belief is None else unwrap(self.belief)
             self._loop = _core.InnerLoop(vehicle, simulation, self.parameters, self.spins)
         if isinstance(wanted, AttitudeThrust):
             return self._loop.attitude(period, state, target, thrust)

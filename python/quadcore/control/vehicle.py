@@ -12,6 +12,9 @@ from .. import _core
 _SCENARIO_KINDS = ("fault", "wrench", "switch", "carried", "vector", "wind_speed", "shares")
 """Kinds of topics that belong to the scenario: faults, pushes, payloads, wind."""
 
+_SCENARIO_MODULES = ("wind", "push", "fault", "payload")
+"""Parts of the file names of plugins that belong to the scenario."""
+
 _SENSED_SHARES = "health"
 """Topic of kind ``shares`` that controllers may read: the detected loss of each rotor."""
 
@@ -23,11 +26,15 @@ class Vehicle:
     ----------
     simulation : Simulation
         Simulation of the vehicle.
+    sensed : Simulation, optional
+        Simulation with the topics, if it is another one. Default: `simulation`.
 
     Attributes
     ----------
     model, world : Model, World
         Documents of the vehicle and its world.
+    plugins : list of PluginInfo
+        Plugins of the vehicle, without those of the scenario.
     dt : float
         Step of the simulation, s.
     mass : float
@@ -59,11 +66,17 @@ class Vehicle:
         Thrust along z, N, and torque about the centre of mass, N m, per squared speed.
     """
 
-    def __init__(self, simulation: Any) -> None:
+    def __init__(self, simulation: Any, sensed: Any = None) -> None:
         _SIMULATIONS[self] = simulation
+        _SENSED[self] = simulation if sensed is None else sensed
         self.model, self.world, self.dt = simulation.model, simulation.world, simulation.dt
         self.rotors: Tuple[_core.Rotor, ...] = simulation.rotors
         self.rotor_count, self.rotor_names = simulation.rotor_count, simulation.rotor_names
+        self.plugins = [
+            plugin
+            for plugin in simulation.plugins
+            if not any(name in plugin.filename for name in _SCENARIO_MODULES)
+        ]
         self.command_width: int = simulation.command_width
         self.mass: float = simulation.mass
         self.inertia = np.array(simulation.inertia)
@@ -78,7 +91,7 @@ class Vehicle:
     @property
     def topics(self) -> Dict[str, Any]:
         """Topics that a controller may read or publish, by name."""
-        known = _find_simulation(self).topics
+        known = _SENSED[self].topics
         return {name: topic for name, topic in known.items() if is_sensed(name, topic.kind)}
 
     def topic(self, name: str) -> Dict[str, float]:
@@ -95,7 +108,7 @@ class Vehicle:
             If the topic does not exist or belongs to the scenario.
         """
         check_topic(self, name)
-        message: Dict[str, float] = _find_simulation(self).topic(name)
+        message: Dict[str, float] = _SENSED[self].topic(name)
         return message
 
     def publish(self, topic: str, values: Any) -> None:
@@ -114,7 +127,7 @@ class Vehicle:
             If the topic belongs to the scenario, or as for `Simulation.publish`.
         """
         check_topic(self, topic)
-        _find_simulation(self).publish(topic, values)
+        _SENSED[self].publish(topic, values)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -129,6 +142,7 @@ class Vehicle:
 
 
 _SIMULATIONS: WeakKeyDictionary[Vehicle, Any] = WeakKeyDictionary()
+_SENSED: WeakKeyDictionary[Vehicle, Any] = WeakKeyDictionary()
 
 
 def unwrap(vehicle: Any) -> Any:
@@ -141,18 +155,14 @@ def is_sensed(name: str, kind: str) -> bool:
     return kind not in _SCENARIO_KINDS or (kind == "shares" and name == _SENSED_SHARES)
 
 
-def check_topic(simulation: Any, name: str) -> None:
+def check_topic(vehicle: Vehicle, name: str) -> None:
     """Raise `InputError` if a topic belongs to the scenario."""
-    found = unwrap(simulation).topics.get(name)
+    found = _SENSED[vehicle].topics.get(name)
     if found is not None and not is_sensed(name, found.kind):
         raise _core.InputError(
             f"topic '{name}' belongs to the scenario, not to the controller. Write it in the "
             "scenario, or add --privileged."
         )
-
-
-def _find_simulation(vehicle: Vehicle) -> Any:
-    return _SIMULATIONS[vehicle]
 
 
 def _describe(simulation: Any) -> Dict[str, Any]:

@@ -12,6 +12,7 @@ from .._core import FlightError, InputError, QuadcoreError
 from ..control import controllers, references
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED, ControllerLike, check_callable
+from ..control.fair_controller import make_sense
 from ..control.inner_loop import SET_POINTS, InnerLoop
 from ..control.keywords import ReferenceName
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
@@ -163,15 +164,16 @@ class ControllerPilot(Pilot):
         controller, inner_loop = self._controller, self._inner_loop
         period = max(1 / self.rate, simulation.dt)  # called once a step at most
         reference = None if self._reference is None else add_future(self._reference)
+        sense = make_sense(controller, simulation)
         width = len(self._limits)
 
         def call_vectorized() -> Any:
-            t, state = simulation.time, _core.Odometry(simulation)
+            t, state = simulation.time, sense()
             wanted = None if reference is None else reference(t)
             return command_one(controller, t, state, wanted, width)
 
         def call() -> Any:
-            t, state = simulation.time, _core.Odometry(simulation)
+            t, state = simulation.time, sense()
             speeds = controller(t, state, None if reference is None else reference(t))
             if isinstance(speeds, SET_POINTS):
                 return inner_loop.speeds(simulation, period, state, speeds)

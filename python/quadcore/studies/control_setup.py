@@ -7,17 +7,16 @@ from functools import lru_cache
 from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .._core import InputError
-from ..control import controllers, gains, references, vectorized
+from ..control import controllers, gains, references
 from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike, check_callable, set_parameter
+from ..control.fair_controller import PRIVILEGED, FairController
 from ..control.keywords import ReferenceName
 from ..control.references import ReferenceLike
 from ..simulation.flight_plan import FlightPlan
 from ..support.arguments import shorten
 from ..support.user_code import names_file
 from ..support.values import SPAWN, check_pose
-from .executor import run_contained
-from .time_limit import time_limit
 
 Controllers = Union[ControllerLike, Mapping[str, ControllerLike], Sequence[ControllerLike]]
 """One or several controllers, or a mapping of labels to controllers."""
@@ -38,6 +37,10 @@ class ControlSetup:
         Timing of all controllers; None keeps that of each controller.
     on_reference
         Whether flights start on the reference.
+    privileged
+        Whether user-defined controllers receive the simulation instead of a view of the vehicle.
+        Their labels then say so. None: they receive it, and nothing is compared that they could
+        win by it.
 
     Raises
     ------
@@ -52,8 +55,13 @@ class ControlSetup:
         controller_rate: Optional[float] = None,
         delay: Optional[float] = None,
         on_reference: bool = False,
+        privileged: Optional[bool] = None,
     ) -> None:
-        self.controllers = [label for label, _ in controllers]
+        self.privileged = privileged
+        self.controllers = [
+            label + PRIVILEGED if privileged and _is_user_code(thing) else label
+            for label, thing in controllers
+        ]
         self.references = [label for label, _ in references_]
         self.things = [thing for _, thing in controllers]
         """Controllers as given."""
@@ -104,36 +112,13 @@ class ControlSetup:
         """Whether a controller is user-defined."""
         return _is_user_code(self.things[controller])
 
-    @lru_cache(maxsize=None)  # noqa: B019  (setups live as long as their study)
-    def is_vectorized(self, controller: int, limit: float) -> bool:
-        """Whether a controller commands several vehicles at once; imports no user code here.
-
-        One that is not made within the wall-clock limit (s) does not.
-        """
-        thing = self.things[controller]
-        if not isinstance(thing, str):
-            return vectorized.is_vectorized(thing)
-        if not names_user_code(thing):
-            return False
-        found: List[Any] = []
-
-        def ask(text: str) -> bool:
-            with time_limit(limit):
-                return vectorized.is_vectorized(controllers.parse(text, ""))
-
-        run_contained(
-            ask,
-            [thing],
-            lambda _, answer: found.append(answer),
-            1,
-            apart=True,
-        )
-        return found == [True]  # the flights show an error
-
     def make(self, controller: int, vehicle: str, values: Mapping[str, float]) -> Any:
         """Make a controller with some values for one flight of a vehicle."""
         given = {name: x for name, x in {**self.timing, **values}.items() if x is not None}
-        return self._make_factory(controller, vehicle)(given)
+        made = self._make_factory(controller, vehicle)(given)
+        if self.privileged is False and not isinstance(made, BuiltInController):
+            return FairController(made)
+        return made
 
     def guide(self, plan: FlightPlan) -> FlightPlan:
         """Add the only controller and reference to a plan."""

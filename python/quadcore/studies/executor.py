@@ -135,6 +135,24 @@ def run_contained(
     )
 
 
+def call_apart(function: Callable[[], Result]) -> Result:
+    """Call a function in a process of its own, and return its result, which must be picklable.
+
+    Raises
+    ------
+    QuadcoreError
+        If the function raises an exception, or its process dies.
+    KeyboardInterrupt
+        At an interrupt; no process remains.
+    """
+    outcomes: List[Any] = []
+    run_contained(lambda _: function(), [0], lambda _, outcome: outcomes.append(outcome), 1)
+    if isinstance(outcomes[0], QuadcoreError):
+        raise outcomes[0]
+    result: Result = outcomes[0]
+    return result
+
+
 def contain_errors(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
     """Make `function` raise QuadcoreError instead of any other exception."""
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .. import _core
-from .._core import Model, QuadcoreError, Rotor, World
+from .._core import Model, QuadcoreError, World
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED
 from ..control.references import Shape
@@ -17,9 +18,10 @@ from ..simulation.flight import count_steps, list_columns
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.state import State
-from ..simulation.trajectory import per_command
+from ..simulation.trajectory import find_speed_limit, per_command
 from ..support.warning import suppress_warnings
 from .time_limit import time_limit
+from .tracking_metrics import RotorData
 
 ENGINES = ("eigen", "gazebo11")
 """Engines with batches that step several vehicles per instruction."""
@@ -32,7 +34,7 @@ MOST_VECTORIZED = 256
 
 
 class FlightRecord(NamedTuple):
-    """Result of a flight with a controller, from which the metrics are computed."""
+    """Result of a flight with a controller, from which any process computes the metrics."""
 
     log: Log
     failure: str
@@ -47,12 +49,43 @@ class FlightRecord(NamedTuple):
     """Duration of some of the calls, s."""
     warnings: Sequence[str]
     """Warnings, as in `Simulation.warnings`."""
-    pilot: ControllerPilot
-    """Pilot of a flight of the same vehicle, with rate and delay."""
-    rotors: Sequence[Rotor]
-    """Rotors of the vehicle, as in `Simulation.rotors`."""
+    rate: float
+    """Update rate of the controller, 1/s."""
+    delay: float
+    """Delay from the controller to the motors, s."""
+    is_vectorized: bool
+    """Whether the controller commands several vehicles at once."""
+    rotors: Sequence[RotorData]
+    limit: float
+    """Limit of the joint speeds, rad/s."""
     model: Model
     world: World
+    elapsed: float = 0.0
+    """Wall-clock duration, s."""
+
+
+def make_record(
+    pilot: ControllerPilot, simulation: Any, plan: FlightPlan, **results: Any
+) -> FlightRecord:
+    """Make the record of a flight from its pilot, its simulation and its plan.
+
+    Parameters
+    ----------
+    pilot, simulation, plan
+        Those of a flight of the same vehicle.
+    **results
+        Other fields of the record.
+    """
+    return FlightRecord(
+        **results,
+        rate=pilot.rate,
+        delay=pilot.delay,
+        is_vectorized=pilot.is_vectorized,
+        rotors=[RotorData.of(rotor) for rotor in simulation.rotors],
+        limit=find_speed_limit(simulation.rotors),
+        model=plan.model,
+        world=plan.world,
+    )
 
 
 def fly_group(
@@ -73,16 +106,22 @@ def fly_group(
         Outcomes; None if the flights cannot share a batch, or one of them has an error, which
         single flights show.
     """
+    started = time.perf_counter()
     try:
         with time_limit(len(described) * limit), suppress_warnings():
             plans = [describe() for describe in described]
             if not _are_alike(plans):
                 return None
             if _are_built_in(plans):
-                return _fly(plans)
-            return _fly_vectorized(plans) if _differ_in_seed(plans) else None
+                found = _fly(plans)
+            elif _differ_in_seed(plans):
+                found = _fly_vectorized(plans)
+            else:
+                return None
     except QuadcoreError:
         return None
+    each = (time.perf_counter() - started) / len(found)
+    return [record._replace(elapsed=each) for record in found]
 
 
 def share_out(rows: Sequence[int], processes: int) -> List[Sequence[int]]:
@@ -145,11 +184,11 @@ class _Kind:
         assert pilot is not None
         pilot.reset(simulation)
         self.guide = pilot.built_in if pilot.is_built_in else None
-        self.plan, self.pilot, self.rotors = plan, pilot, simulation.rotors
+        self.plan, self.pilot = plan, pilot
         self.columns = list_columns(simulation, (), pilot)
         self.start = plan.find_start(simulation)
         self.dt = simulation.dt
-        self._simulation = simulation  # the controller refers to it
+        self.simulation = simulation  # the controller refers to it
         self._per_command = per_command(simulation)
         self._beside = np.empty((0, 0))
 
@@ -159,7 +198,7 @@ class _Kind:
             self._beside = self.pilot.sample(table[:, 0])
         wanted = self._beside[: len(table)]
         whole = np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
-        log = Log.of_rows(whole, self.columns, {}, self._simulation.ignored)
+        log = Log.of_rows(whole, self.columns, {}, self.simulation.ignored)
         log.per_command = self._per_command
         return log
 
@@ -233,18 +272,17 @@ def _fly(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
     )
     failures = batch.failures
     return [
-        FlightRecord(
-            kind.make_log(tables[i, : rows[i]]),
-            failures[i],
-            int(calls[i]),
-            int(saturated[i]),
-            (rates[i], commands[i]),
-            seconds[i],
-            batch.warnings(i),
+        make_record(
             kind.pilot,
-            kind.rotors,
-            plans[i].model,
-            plans[i].world,
+            kind.simulation,
+            plans[i],
+            log=kind.make_log(tables[i, : rows[i]]),
+            failure=failures[i],
+            calls=int(calls[i]),
+            saturated=int(saturated[i]),
+            variation=(rates[i], commands[i]),
+            seconds=seconds[i],
+            warnings=batch.warnings(i),
         )
         for i, kind in enumerate(kinds)
     ]
@@ -268,18 +306,17 @@ def _fly_vectorized(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
         kind.pilot.close()
     failures = batch.failures
     return [
-        FlightRecord(
-            kind.make_log(tables[i, : rows[i]]),
-            failures[i],
-            command_all.calls,
-            int(command_all.saturated[i]),
-            (rates[i], commands[i]),
-            np.empty(0),
-            batch.warnings(i),
+        make_record(
             kind.pilot,
-            kind.rotors,
-            plans[i].model,
-            plans[i].world,
+            kind.simulation,
+            plans[i],
+            log=kind.make_log(tables[i, : rows[i]]),
+            failure=failures[i],
+            calls=command_all.calls,
+            saturated=int(command_all.saturated[i]),
+            variation=(rates[i], commands[i]),
+            seconds=np.empty(0),
+            warnings=batch.warnings(i),
         )
         for i in range(n)
     ]

@@ -17,10 +17,9 @@ from ..simulation.flight import Rows, fly, list_columns
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
-from ..simulation.trajectory import find_speed_limit
 from ..support.warning import suppress_warnings
 from .controller_timing import summarise_durations
-from .grouped_flights import FlightRecord, fly_group
+from .grouped_flights import FlightRecord, fly_group, make_record
 from .step_response import step_response
 from .table import NOT_FLOWN
 from .time_limit import time_limit
@@ -60,6 +59,8 @@ class Outcome(NamedTuple):
     """Shapes of the vehicle, if kept."""
     motion: Optional[np.ndarray] = None
     """Velocity (m/s) and angular velocity (rad/s) of a decimated log, if watched; (rows, 6)."""
+    is_vectorized: bool = False
+    """Whether the controller commands several vehicles at once."""
     refused: bool = False
     """Whether the input was invalid and the flight did not run."""
 
@@ -81,7 +82,14 @@ def fly_and_measure(
     timed: bool = True,
     watch: bool = False,
 ) -> Outcome:
-    """Simulate a flight and compute its metrics.
+    """Simulate a flight and compute its metrics; arguments of `fly_alone` and `measure_record`."""
+    return measure_record(fly_alone(described, most, keep, timed), keep, watch)
+
+
+def fly_alone(
+    described: Callable[[], FlightPlan], most: float, keep: bool = False, timed: bool = True
+) -> FlightRecord:
+    """Simulate a flight.
 
     Parameters
     ----------
@@ -90,11 +98,9 @@ def fly_and_measure(
     most
         Wall-clock limit, s.
     keep
-        Whether to keep a decimated log.
+        Whether to log the topics of the animation.
     timed
         Whether to time each update of the controller, which slows the flight.
-    watch
-        Whether to keep the motion.
 
     Raises
     ------
@@ -106,7 +112,6 @@ def fly_and_measure(
     with time_limit(most), suppress_warnings():
         flight = described()
         simulation = flight.simulation()
-        rotors = simulation.rotors
         pilot: Any = flight.pilot(simulation, timed)
         topics = _animated_topics(simulation) if keep else []
         rows = Rows(simulation, list_columns(simulation, topics, pilot))
@@ -123,33 +128,69 @@ def fly_and_measure(
                 )
         except FlightError as error:
             failure = str(error)
-    log = rows.log()
-    outcome = _make_outcome(
-        FlightRecord(
-            log,
-            failure,
-            pilot.updates,
-            pilot.saturated,
-            pilot.variation,
-            pilot.seconds,
-            simulation.warnings,
+        return make_record(
             pilot,
-            rotors,
-            flight.model,
-            flight.world,
+            simulation,
+            flight,
+            log=rows.log(),
+            failure=failure,
+            calls=pilot.updates,
+            saturated=pilot.saturated,
+            variation=pilot.variation,
+            seconds=pilot.seconds,
+            warnings=simulation.warnings,
+            elapsed=time.perf_counter() - started,
         )
-    )._replace(seconds=time.perf_counter() - started)
+
+
+def measure_record(flight: FlightRecord, keep: bool = False, watch: bool = False) -> Outcome:
+    """Compute the metrics of a flight, perhaps in another process than that of its controller.
+
+    Parameters
+    ----------
+    flight
+        Result of `fly_alone` or `fly_group`.
+    keep
+        Whether to keep a decimated log.
+    watch
+        Whether to keep the motion.
+    """
+    log = flight.log
+    failure = describe_failure(log) or flight.failure
+    measures = NAN
+    if not failure:
+        share = flight.saturated / max(1, flight.calls)
+        clearance = Clearance(flight.model, flight.world)
+        clearance.receive(log.table, np.empty(0))
+        measures = {
+            **measure(log, share, flight.rotors, flight.variation),
+            **clearance.measures(),
+        }
+    call, slow_call = summarise_durations(flight.seconds)
+    outcome = Outcome(
+        failure,
+        measures,
+        seconds=flight.elapsed,
+        updates=flight.calls,
+        call=call,
+        slow_call=slow_call,
+        rate=flight.rate,
+        delay=flight.delay,
+        warnings=list(flight.warnings),
+        is_vectorized=flight.is_vectorized,
+    )
     if watch:
         few = decimate(log)
         motion = np.hstack([few.linear_velocity, few.angular_velocity])
         outcome = outcome._replace(motion=motion)
     if not keep:
         return outcome
-    response = None if failure else step_response(log)
-    limit = find_speed_limit(rotors)
+    response = None if flight.failure else step_response(log)
     with suppress_warnings():
         vehicle = read_vehicle(flight.model)
-    return outcome._replace(log=decimate(log), response=response, limit=limit, vehicle=vehicle)
+    return outcome._replace(
+        log=decimate(log), response=response, limit=flight.limit, vehicle=vehicle
+    )
 
 
 def fly_together(
@@ -170,38 +211,8 @@ def fly_together(
         Outcomes; None if only single flights are possible. The durations of the controller are
         those of every sixteenth update.
     """
-    started = time.perf_counter()
     flights = fly_group(described, most)
-    if flights is None:
-        return None
-    outcomes = [_make_outcome(flight) for flight in flights]
-    each = (time.perf_counter() - started) / len(outcomes)
-    return [outcome._replace(seconds=each) for outcome in outcomes]
-
-
-def _make_outcome(flight: FlightRecord) -> Outcome:
-    """Compute the metrics of a flight."""
-    failure = describe_failure(flight.log) or flight.failure
-    measures = NAN
-    if not failure:
-        share = flight.saturated / max(1, flight.calls)
-        clearance = Clearance(flight.model, flight.world)
-        clearance.receive(flight.log.table, np.empty(0))
-        measures = {
-            **measure(flight.log, share, flight.rotors, flight.variation),
-            **clearance.measures(),
-        }
-    call, slow_call = summarise_durations(flight.seconds)
-    return Outcome(
-        failure,
-        measures,
-        updates=flight.calls,
-        call=call,
-        slow_call=slow_call,
-        rate=flight.pilot.rate,
-        delay=flight.pilot.delay,
-        warnings=list(flight.warnings),
-    )
+    return None if flights is None else [measure_record(flight) for flight in flights]
 
 
 def _animated_topics(simulation: Simulation) -> List[str]:

@@ -209,7 +209,25 @@ def describe_options(kind: Type[Options]) -> Dict[str, OptionInfo]:
 
 
 @dataclass(frozen=True)
-class EvaluateOptions(Options):
+class ControlOptions(Options):
+    """Options of studies that judge controllers."""
+
+    privileged: bool = field(default=False, metadata=_describe(
+        CONTROLLER, "privileged", "",
+        "give your own controllers the whole simulation instead of a view of the vehicle; "
+        "the results mark them",
+        kind=arguments.FLAG, without="false",
+    ))  # fmt: skip
+
+
+class ControlKeywords(Keywords, total=False):
+    """`ControlOptions` as keyword arguments, for type checkers."""
+
+    privileged: bool
+
+
+@dataclass(frozen=True)
+class EvaluateOptions(ControlOptions):
     """Options of `evaluate`."""
 
     duration: float = field(default=30.0, metadata=change_option("duration"))
@@ -243,7 +261,7 @@ class CompareOptions(Options):
 
 
 @dataclass(frozen=True)
-class SweepOptions(Options):
+class SweepOptions(ControlOptions):
     """Options of `sweep`."""
 
     spawn: Optional[Sequence[Number]] = field(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Dict, Optional, Sequence, Tuple
+from typing import Dict, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -64,6 +64,18 @@ _SETTLED = 0.02  # of a step
 _JUMP = 1e-3  # m; a larger sudden change of the reference between two rows is a step
 
 
+class RotorData(NamedTuple):
+    """Numbers of a `Rotor` for metrics, which can be pickled."""
+
+    torque_coefficient: float
+    slowdown: float
+
+    @classmethod
+    def of(cls, rotor: Rotor) -> RotorData:
+        """Return the numbers of a rotor."""
+        return cls(rotor.torque_coefficient, rotor.slowdown)
+
+
 def find_failure_time(log: Log) -> Optional[float]:
     """Return the first time at which the tracking error exceeds `FAILURE_DISTANCE`, s, or None."""
     away = np.flatnonzero(~(compute_errors(log) <= FAILURE_DISTANCE))
@@ -94,7 +106,7 @@ def compute_rms_and_max(away: np.ndarray) -> Tuple[float, float]:
 def measure(
     log: Log,
     saturated: float,
-    rotors: Sequence[Rotor],
+    rotors: Sequence[Union[Rotor, RotorData]],
     variation: Optional[Tuple[np.ndarray, np.ndarray]] = None,
 ) -> Dict[str, float]:
     """Compute the metrics of a flight.

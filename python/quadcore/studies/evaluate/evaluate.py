@@ -30,9 +30,16 @@ from ...support.warning import warn
 from ..axes import Values
 from ..control_setup import Controllers, References
 from ..executor import contain_errors, count_cores, run_contained
-from ..grouped_flights import MOST_VECTORIZED, share_out, split
-from ..measured_flight import Outcome, fly_and_measure, fly_together
-from ..options import EvaluateOptions, Keywords, Names, Progress, accept_options, choose_engines
+from ..grouped_flights import MOST_VECTORIZED, FlightRecord, fly_group, share_out, split
+from ..measured_flight import Outcome, fly_alone, measure_record
+from ..options import (
+    ControlKeywords,
+    EvaluateOptions,
+    Names,
+    Progress,
+    accept_options,
+    choose_engines,
+)
 from ..table import count_outcomes
 from .margins import MarginSearch
 from .plan import Plan
@@ -109,7 +116,7 @@ def evaluate(
     engine: Optional[AnyEngineName] = None,
     vary: Optional[Mapping[str, Values]] = None,
     margins: bool = False,
-    **options: Unpack[Keywords],
+    **options: Unpack[ControlKeywords],
 ) -> Evaluation:
     """Measure the tracking error of controllers along references.
 
@@ -189,9 +196,16 @@ class _Flights:
 
     def fly(self, drawn: Collection[int] = ()) -> None:
         """Simulate all cases, then the trials of the margin search."""
-        plan = self._plan
+        plan, rows = self._plan, range(len(self._plan))
         flights = [partial(plan.make_plan, case) for case in plan]
-        self._fly_all(flights, self.outcomes, self._group(range(len(plan)), drawn), drawn)
+        fly = partial(self._fly_tasks, flights, self.outcomes, drawn=drawn)
+        if plan.control.runs_user_code:
+            fly([[i] for i in rows[:: len(plan.seeds)]])
+            fly(self._group_other_seeds())
+        else:
+            processes = plan.options.processes or count_cores()
+            groups = share_out([i for i in rows if i not in drawn], processes)
+            fly([*([i] for i in sorted(drawn)), *groups])
         if self._searches is not None:
             self._searches.run(self._fly_trials)
 
@@ -213,67 +227,70 @@ class _Flights:
     def _fly_trials(self, trials: Sequence[Trial]) -> List[Outcome]:
         outcomes = [Outcome()] * len(trials)
         flights = [partial(trial.make_plan, self._plan) for trial in trials]
-        self._fly_all(flights, outcomes, [], watch=True)
+        self._fly_tasks(flights, outcomes, [[i] for i in range(len(trials))], watch=True)
         return outcomes
 
-    def _group(self, rows: Sequence[int], drawn: Collection[int] = ()) -> List[Sequence[int]]:
-        """Group the flights that can share a batch; drawn flights need logs of their own."""
-        plan = self._plan
-        if not plan.control.runs_user_code:
-            processes = plan.options.processes or count_cores()
-            return share_out([i for i in rows if i not in drawn], processes)
-        groups: List[Sequence[int]] = []
-        for combination in split(rows, len(plan.seeds)):  # they differ only in the seed
-            controller = plan[combination[0]].controller
-            if plan.control.is_vectorized(controller, plan.options.time_limit):
-                groups += split([i for i in combination if i not in drawn], MOST_VECTORIZED)
-        return groups
+    def _group_other_seeds(self) -> List[Sequence[int]]:
+        """Group the seeds after the first that a vectorized controller commands together."""
+        tasks: List[Sequence[int]] = []
+        for first, *others in split(range(len(self._plan)), len(self._plan.seeds)):
+            together = MOST_VECTORIZED if self.outcomes[first].is_vectorized else 1
+            tasks += split(others, together)
+        return tasks
 
-    def _fly_all(
+    def _fly_tasks(
         self,
         flights: Sequence[Callable[[], FlightPlan]],
         outcomes: List[Outcome],
-        groups: Sequence[Sequence[int]],
+        tasks: Sequence[Sequence[int]],
         drawn: Collection[int] = (),
         watch: bool = False,
     ) -> None:
-        """Simulate flights, those of a group together.
+        """Simulate flights, those of a task together.
 
-        Flights in `drawn` keep their logs, and all their motion if watched.
+        Flights in `drawn` keep their logs, and all their motion if watched. The metrics of
+        user-defined controllers are computed in this process, which does not run their code.
         """
         options = self._plan.options
         expected = len(self._plan) + (self._searches.expected if self._searches else 0)
-        total = max(self._done + len(flights), expected)
+        total = max(self._done + sum(map(len, tasks)), expected)
+        apart = self._plan.control.runs_user_code
 
-        grouped = {i for rows in groups for i in rows}
-        tasks = [*([i] for i in range(len(flights)) if i not in grouped), *groups]
+        def fly(rows: Sequence[int]) -> List[Union[FlightRecord, Outcome]]:
+            found = None
+            if len(rows) > 1:
+                found = fly_group([flights[i] for i in rows], options.time_limit)
+            records: List[Any] = found or [_contain(fly_one, i) for i in rows]
+            return records if apart else list(map(finish, rows, records))
 
-        def fly(rows: Sequence[int]) -> List[Outcome]:
-            if len(rows) == 1:
-                return [fly_one(rows[0])]
-            found = fly_together([flights[i] for i in rows], options.time_limit)
-            return found or [fly_contained(i) for i in rows]
+        def fly_one(i: int) -> FlightRecord:
+            return fly_alone(flights[i], options.time_limit, i in drawn)
 
-        def fly_one(i: int) -> Outcome:
-            return fly_and_measure(flights[i], options.time_limit, i in drawn, watch=watch)
+        def finish(i: int, found: Union[FlightRecord, Outcome]) -> Outcome:
+            if isinstance(found, Outcome):
+                return found
+            outcome: Outcome = _contain(lambda one: measure_record(one, i in drawn, watch), found)
+            return outcome
 
-        def fly_contained(i: int) -> Outcome:
-            try:
-                return contain_errors(fly_one)(i)
-            except QuadcoreError as error:
-                return _describe_error(error)
-
-        def take(task: int, found: Union[List[Outcome], QuadcoreError]) -> None:
+        def take(task: int, found: Union[List[Any], QuadcoreError]) -> None:
+            rows = tasks[task]
             if isinstance(found, QuadcoreError):
-                found = [_describe_error(found)] * len(tasks[task])
-            for i, outcome in zip(tasks[task], found):
-                outcomes[i] = outcome
-            self._done += len(tasks[task])
+                found = [_describe_error(found)] * len(rows)
+            for i, one in zip(rows, found):
+                outcomes[i] = finish(i, one)
+            self._done += len(rows)
             if self._progress is not None:
                 self._progress(self._done, total)
 
-        apart = self._plan.control.runs_user_code
         run_contained(fly, tasks, take, options.processes, apart=apart)
+
+
+def _contain(function: Callable[[Any], Any], argument: Any) -> Any:
+    """Call a function, and return the outcome of an error instead of raising it."""
+    try:
+        return contain_errors(function)(argument)
+    except QuadcoreError as error:
+        return _describe_error(error)
 
 
 def _describe_error(error: QuadcoreError) -> Outcome:

@@ -55,6 +55,7 @@ class Plan(Cases):
             options.controller_rate,
             options.delay,
             on_reference=options.spawn is None,
+            privileged=options.privileged,
         )
         super().__init__(design, control, models, engines, options)
         self.scenarios = [label_point(point) for point in design]

@@ -8,7 +8,9 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 from ..._core import ParameterInfo, parse_number
 from ...control.built_in import BuiltInController
 from ...control.controller import check_callable, set_parameter
+from ...control.fair_controller import FairController
 from ...control.inner_loop import InnerLoop
+from ...control.vehicle import Vehicle
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.simulation import Simulation
 from ..cases import Case, Cases
@@ -115,11 +117,12 @@ class _NominalModelController:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._controller, name)
 
-    def reset(self, _: Simulation) -> None:
-        """Reset the controller with the nominal vehicle."""
+    def reset(self, flown: Simulation) -> None:
+        """Reset the controller with the nominal vehicle, and the sensors of the simulated one."""
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
-            reset(self._vehicle)
+            is_fair = isinstance(self._controller, FairController)
+            reset(Vehicle(self._vehicle, flown) if is_fair else self._vehicle)
 
     def __call__(self, t: float, state: Any, reference: Any) -> Any:
         """Call the controller."""

@@ -24,7 +24,16 @@ from ..executor import ProcessDied, count_cores, run_cases
 from .batches import fly_together
 from .plan import AnyPlan
 from .row_file import compute_fingerprint
-from .row_spec import Row, RowSpec, compute_digest, describe_failure, fly_row
+from .row_spec import (
+    FlownRow,
+    Row,
+    RowSpec,
+    compute_digest,
+    describe_failure,
+    fly_row,
+    fly_user_code,
+    measure_row,
+)
 
 if TYPE_CHECKING:
     import concurrent.futures
@@ -92,19 +101,20 @@ class _Attempt:
             apart=self._plan.apart,
         )
 
-    def _fly_task(self, numbers: Sequence[int]) -> List[Row]:
-        return _fly_several([_make_spec(self._plan, number) for number in numbers])
+    def _fly_task(self, numbers: Sequence[int]) -> List[Any]:
+        specs = [_make_spec(self._plan, number) for number in numbers]
+        return list(map(_fly_apart, specs)) if self._plan.apart else _fly_several(specs)
 
     def _note_tasks(self, tasks: Iterable[Sequence[int]]) -> Iterator[Sequence[int]]:
         for index, numbers in enumerate(tasks):
             self._pending[index] = numbers
             yield numbers
 
-    def _take_outcome(self, index: int, outcome: Union[List[Row], QuadcoreError]) -> None:
+    def _take_outcome(self, index: int, outcome: Union[List[Any], QuadcoreError]) -> None:
         numbers = self._pending.pop(index)
         if not isinstance(outcome, QuadcoreError):
             for row in outcome:
-                self._take(row)
+                self._take(measure_row(row))
         elif len(numbers) > 1 or (_may_be_random(outcome) and self._number < _ATTEMPTS):
             self.again.extend(numbers)
         else:
@@ -222,13 +232,13 @@ def fly_all(specs: Sequence[Union[RowSpec, Row]], apart: bool) -> List[Row]:
     flown: List[Row] = []
     if apart:  # user-defined controllers may keep state between flights
 
-        def take_outcome(index: int, outcome: Union[Row, QuadcoreError]) -> None:
+        def take_outcome(index: int, outcome: Union[FlownRow, Row, QuadcoreError]) -> None:
             if isinstance(outcome, QuadcoreError):
                 spec = specs[index]
                 outcome = Row(spec.row, str(outcome), None, _get_fingerprint(spec))
-            flown.append(outcome)
+            flown.append(measure_row(outcome))
 
-        run_cases(_fly_row, specs, take_outcome, 1, apart=True)
+        run_cases(_fly_apart, specs, take_outcome, 1, apart=True)
         return flown
     return _fly_several(specs)
 
@@ -244,6 +254,10 @@ def _fly_several(specs: Sequence[Union[RowSpec, Row]]) -> List[Row]:
 
 def _fly_row(spec: Union[RowSpec, Row]) -> Row:
     return spec if isinstance(spec, Row) else fly_row(spec)
+
+
+def _fly_apart(spec: Union[RowSpec, Row]) -> Union[FlownRow, Row]:
+    return spec if isinstance(spec, Row) else fly_user_code(spec)
 
 
 def _get_fingerprint(spec: Union[RowSpec, Row]) -> str:

@@ -96,7 +96,7 @@ class Plan(Cases):
             thing = self.control.things[case.controller]
             if names_user_code(thing):
                 values = {**self.control.timing, **pick_controller_values(self.design[case.point])}
-                own = UserController.of(thing, values)
+                own = UserController.of(thing, values, bool(self.control.privileged))
             else:
                 plan = replace(plan, controller=self.make_controller(case))
         return Flight(row, self.list_cells(row), plan, own, self.options.time_limit)
@@ -143,6 +143,7 @@ def _make_control_setup(
             options.controller_rate,
             options.delay,
             on_reference=options.spawn is None,
+            privileged=options.privileged,
         )
     if controllers is not None or references_ is not None:
         raise InputError("both --commands and --controller are given. Give one of them.")

@@ -7,16 +7,19 @@ import importlib.util
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Mapping, NamedTuple, Optional, Protocol, Tuple
+from typing import Any, Callable, Mapping, NamedTuple, Optional, Protocol, Tuple, Union
 
 from ..._core import FlightError, InputError, QuadcoreError
 from ...control import controllers
+from ...control.built_in import BuiltInController
+from ...control.fair_controller import FairController
 from ...report.decimation import decimate
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support.user_code import describe_error, split_name
 from ...support.warning import suppress_warnings
-from ..measured_flight import fly_and_measure
+from ..grouped_flights import FlightRecord
+from ..measured_flight import fly_alone, fly_and_measure, measure_record
 from ..time_limit import time_limit
 from . import motion_metrics
 
@@ -36,16 +39,20 @@ class UserController:
     """Values to set: rate, delay, parameters."""
     source: str
     """Digest of the text of its module, without imported modules."""
+    privileged: bool
+    """Whether it receives the simulation instead of a view of the vehicle."""
 
     @classmethod
-    def of(cls, text: str, values: Mapping[str, Any]) -> UserController:
+    def of(cls, text: str, values: Mapping[str, Any], privileged: bool) -> UserController:
         """Find the module without importing it."""
         given = tuple((name, value) for name, value in values.items() if value is not None)
-        return cls(text, given, compute_digest(read_source(split_name(text).place)))
+        return cls(text, given, compute_digest(read_source(split_name(text).place)), privileged)
 
     def make(self, vehicle: str) -> Any:
         """Import and make the controller; raises `InputError`."""
-        return controllers.parse(self.text, vehicle, dict(self.values))
+        made = controllers.parse(self.text, vehicle, dict(self.values))
+        is_free = self.privileged or isinstance(made, BuiltInController)
+        return made if is_free else FairController(made)
 
 
 @dataclass(frozen=True)
@@ -80,10 +87,11 @@ class Flight:
         if self.own is None and self.plan.controller is None:
             with time_limit(self.limit), suppress_warnings():
                 return motion_metrics.measure(self.plan.fly())
-        outcome = fly_and_measure(self._plan_with_controller, self.limit, timed=False)
-        if outcome.failure:
-            raise FlightError(outcome.failure)
-        return outcome.measures
+        return get_measures(self.fly())
+
+    def fly(self) -> FlightRecord:
+        """Simulate the flight of a controller; raises `QuadcoreError` if it cannot start."""
+        return fly_alone(self._plan_with_controller, self.limit, timed=False)
 
     def watch(self) -> Log:
         """Simulate the flight again and return a decimated log, also of a failed flight.
@@ -130,11 +138,48 @@ class Row(NamedTuple):
     fingerprint: str
 
 
+class FlownRow(NamedTuple):
+    """Row of a user-defined controller, which another process than the controller's measures."""
+
+    row: int
+    flight: FlightRecord
+    fingerprint: str
+
+
 def fly_row(spec: RowSpec) -> Row:
     """Run a row and return its outcome."""
-    fingerprint = spec.fingerprint()
+    return _contain(spec.row, spec.fingerprint(), lambda: spec.measure())
+
+
+def fly_user_code(spec: RowSpec) -> Union[FlownRow, Row]:
+    """Run a row in the process of a user-defined controller; `measure_row` follows in another."""
+    if not isinstance(spec, Flight):
+        return fly_row(spec)
+    flown = []
+    failed = _contain(spec.row, spec.fingerprint(), lambda: flown.append(spec.fly()))
+    return FlownRow(spec.row, flown[0], failed.fingerprint) if flown else failed
+
+
+def measure_row(found: Union[FlownRow, Row]) -> Row:
+    """Compute the metrics of a row, unless they are known."""
+    if isinstance(found, Row):
+        return found
+    flight = found.flight
+    return _contain(found.row, found.fingerprint, lambda: get_measures(flight))
+
+
+def get_measures(flight: FlightRecord) -> Measures:
+    """Return the metrics of a flight; raises `FlightError` if it failed."""
+    outcome = measure_record(flight)
+    if outcome.failure:
+        raise FlightError(outcome.failure)
+    return outcome.measures
+
+
+def _contain(row: int, fingerprint: str, measure: Callable[[], Optional[Measures]]) -> Row:
+    """Call a function that returns metrics, and let any error of it fail its row only."""
     try:
-        return Row(spec.row, "", spec.measure(), fingerprint)
+        return Row(row, "", measure(), fingerprint)
     except QuadcoreError as error:
         failure = describe_failure(error)
     except MemoryError:
@@ -143,7 +188,7 @@ def fly_row(spec: RowSpec) -> Row:
         raise
     except BaseException as error:  # SystemExit too: user code must not end the sweep
         failure = describe_error(error)
-    return Row(spec.row, " ".join(failure.split()), None, fingerprint)
+    return Row(row, " ".join(failure.split()), None, fingerprint)
 
 
 def describe_failure(error: QuadcoreError) -> str:

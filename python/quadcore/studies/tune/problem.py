@@ -24,8 +24,8 @@ from ..axes import Values
 from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
 from ..control_setup import ControlSetup, add_labels, names_user_code
 from ..design import Design
-from ..executor import run_contained
-from ..options import Options
+from ..executor import call_apart
+from ..options import ControlOptions
 from ..time_limit import time_limit
 from ..tracking_metrics import FAILURE_DISTANCE, compute_errors, describe_failure, find_failure_time
 from ..variation import pick_controller_values
@@ -52,6 +52,14 @@ class Trial(NamedTuple):
     """Values of the point for the controller."""
     has_offset: bool = False
     """Whether it begins `OFFSET` the reference."""
+
+
+class Flown(NamedTuple):
+    """Flight of a trial."""
+
+    log: Log
+    failure: str
+    """Reason of a failure; "" for success."""
 
 
 class TrialResult(NamedTuple):
@@ -87,7 +95,7 @@ class Problem:
         only: Optional[Sequence[str]],
         engine: str,
         vary: Mapping[str, Values],
-        options: Options,
+        options: ControlOptions,
     ) -> None:
         if not models or not references_ or not held_out:
             raise InputError(
@@ -116,7 +124,11 @@ class Problem:
         check_models(everything, design)
         timing = options.controller_rate, options.delay
         control = ControlSetup(
-            [("", controller)], [*trained, *judged], *timing, options.spawn is None
+            [("", controller)],
+            [*trained, *judged],
+            *timing,
+            options.spawn is None,
+            options.privileged,
         )
         self._cases = Cases(design, control, everything, [engine], options)
         self._cases.check()
@@ -153,12 +165,21 @@ class Problem:
         return self._cases.control.make(0, self.vehicle, gains)
 
     def fly(self, trial: Trial, gains: Mapping[str, float]) -> TrialResult:
+        """Simulate and judge a trial; raises as `simulate`."""
+        return self.judge(trial, self.simulate(trial, gains))
+
+    def simulate(self, trial: Trial, gains: Mapping[str, float]) -> Flown:
         """Simulate a trial; raises `InputError` if the controller rejects gains or vehicle."""
-        failure = ""
         try:
-            log = self._fly_log(trial, gains)
+            return Flown(self._fly_log(trial, gains), "")
         except FlightError as error:
-            log, failure = error.log, str(error)  # type: ignore[attr-defined]
+            if not hasattr(error, "log"):
+                raise
+            return Flown(error.log, str(error))
+
+    def judge(self, trial: Trial, flown: Flown) -> TrialResult:
+        """Compute the result of a trial, which needs no code of the controller."""
+        log, failure = flown
         away = np.minimum(
             np.nan_to_num(compute_errors(log), nan=FAILURE_DISTANCE), FAILURE_DISTANCE
         )
@@ -171,25 +192,35 @@ class Problem:
         square = (1 - rest) * np.mean(away**2) + rest * FAILURE_DISTANCE**2
         return TrialResult(float(np.sqrt(square)), failure)
 
-    def check_return(self, trial: Trial, gains: Mapping[str, float]) -> str:
+    def simulate_return(self, trial: Trial, gains: Mapping[str, float]) -> List[Flown]:
+        """Simulate a trial from the reference and from an offset, until the first failure."""
+        longer = trial._replace(plan=replace(trial.plan, duration=_RETURN_TIME))
+        flown: List[Flown] = []
+        for has_offset in (False, True):
+            flown.append(self.simulate(longer._replace(has_offset=has_offset), gains))
+            if flown[-1].failure:
+                break
+        return flown
+
+    def judge_return(self, flown: Sequence[Flown]) -> str:
         """Check that a flight from an offset returns to the flight from the reference.
 
         On the reference, a controller with a perfect model hardly needs its gains. Their purpose is
         to correct an offset.
+
+        Parameters
+        ----------
+        flown
+            Result of `simulate_return`.
 
         Returns
         -------
         str
             Reason of a failure; "" for success.
         """
-        longer = trial._replace(plan=replace(trial.plan, duration=_RETURN_TIME))
-        try:
-            logs = [
-                self._fly_log(longer._replace(has_offset=has_offset), gains)
-                for has_offset in (False, True)
-            ]
-        except FlightError as error:
-            return str(error)
+        if flown[-1].failure:
+            return flown[-1].failure
+        logs = [each.log for each in flown]
         apart = np.linalg.norm(logs[0].position - logs[1].position, axis=1)
         left = float(apart[logs[0].time > logs[0].time[-1] - _LAST].max())
         if left <= _REMAINDER * apart[0]:
@@ -219,9 +250,9 @@ class Problem:
     def list_settings(self) -> Dict[str, Any]:
         """Return the settings of the flights, as plain values."""
         plan = self.training[0].plan
-        values = {each.name: getattr(self.options, each.name) for each in fields(Options)}
+        values = {each.name: getattr(self.options, each.name) for each in fields(ControlOptions)}
         axes = {axis.name: list(axis.values) for axis in self._cases.design.listed}
-        defaults = vars(Options())
+        defaults = vars(ControlOptions())
         return {
             "engine": plan.engine,
             "duration": plan.duration,
@@ -278,17 +309,15 @@ class Problem:
 
 def _read_own(text: str, limit: float) -> Gains:
     """Read the parameters of a user-defined controller in a separate process."""
-    read: List[Any] = []
 
-    def import_it(_: int) -> Gains:
+    def import_it() -> Gains:
         with suppress_warnings(), time_limit(limit):
             return controllers.read_own(text)
 
-    run_contained(import_it, [0], lambda _, outcome: read.append(outcome), 1)
-    if isinstance(read[0], QuadcoreError):
-        raise InputError(str(read[0]))
-    found: Gains = read[0]
-    return found
+    try:
+        return call_apart(import_it)
+    except QuadcoreError as error:
+        raise InputError(str(error)) from error
 
 
 def _make_plain(value: Any) -> Any:

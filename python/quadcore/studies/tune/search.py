@@ -15,7 +15,7 @@ from ..executor import run_contained
 from ..options import Progress
 from ..time_limit import time_limit
 from ..tracking_metrics import FAILURE_DISTANCE
-from .problem import Problem, Trial, TrialResult
+from .problem import Flown, Problem, Trial, TrialResult
 
 OBJECTIVE = (
     "mean over the cases, from the start of the reference and from an offset, of the RMS tracking "
@@ -96,11 +96,11 @@ class Search:
             return
         errors: List[QuadcoreError] = []
 
-        def fly(index: int) -> TrialResult:
+        def fly(index: int) -> Flown:
             with suppress_warnings(), time_limit(self._limit):
-                return problem.fly(problem.training[index], start)
+                return problem.simulate(problem.training[index], start)
 
-        def take(_: int, outcome: Union[TrialResult, QuadcoreError]) -> None:
+        def take(_: int, outcome: Union[Flown, QuadcoreError]) -> None:
             if isinstance(outcome, InputError):
                 errors.append(outcome)
 
@@ -167,12 +167,13 @@ class Search:
             held_out[case.label] = flown.error
         left: List[str] = [""] * len(problem.return_trials)
 
-        def take(index: int, outcome: Union[str, QuadcoreError]) -> None:
-            left[index] = str(outcome)
+        def take(index: int, outcome: Union[List[Flown], QuadcoreError]) -> None:
+            failed = isinstance(outcome, QuadcoreError)
+            left[index] = str(outcome) if failed else problem.judge_return(outcome)  # type: ignore
 
-        def fly(index: int) -> str:
+        def fly(index: int) -> List[Flown]:
             with suppress_warnings(), time_limit(self._limit):
-                return problem.check_return(problem.return_trials[index], gains)
+                return problem.simulate_return(problem.return_trials[index], gains)
 
         self._run(fly, len(left), take)
         for case, failure in zip(problem.return_trials, left):
@@ -192,15 +193,18 @@ class Search:
 
     def _fly(self, flights: Sequence[Tuple[Trial, Mapping[str, float]]]) -> List[TrialResult]:
         outcomes: List[Optional[TrialResult]] = [None] * len(flights)
+        problem = self._problem
 
-        def take(index: int, outcome: Union[TrialResult, QuadcoreError]) -> None:
-            # Gains that the controller rejects count as the worst.
-            failed = isinstance(outcome, QuadcoreError)
-            outcomes[index] = TrialResult(FAILURE_DISTANCE, str(outcome)) if failed else outcome  # type: ignore
+        def take(index: int, outcome: Union[Flown, QuadcoreError]) -> None:
+            if isinstance(outcome, QuadcoreError):
+                # Gains that the controller rejects count as the worst.
+                outcomes[index] = TrialResult(FAILURE_DISTANCE, str(outcome))
+            else:
+                outcomes[index] = problem.judge(flights[index][0], outcome)
 
-        def fly(index: int) -> TrialResult:
+        def fly(index: int) -> Flown:
             with suppress_warnings(), time_limit(self._limit):
-                return self._problem.fly(*flights[index])
+                return problem.simulate(*flights[index])
 
         # Indices, as a reference may be a function, which cannot be pickled.
         self._run(fly, len(flights), take)

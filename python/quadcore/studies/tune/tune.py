@@ -13,7 +13,7 @@ from ...support.arguments import to_list
 from ...support.optional_packages import require_package
 from ..axes import Values
 from ..control_setup import References
-from ..options import Keywords, Names, Options, Progress, accept_options
+from ..options import ControlKeywords, ControlOptions, Names, Progress, accept_options
 from .problem import Problem
 from .search import Search, Tuning
 
@@ -24,7 +24,7 @@ _INTERRUPTED = "interrupted"
 
 
 @accept_options(
-    Options,
+    ControlOptions,
     model=arguments.NAMES,
     references=arguments.GUIDES,
     held_out=arguments.GUIDES,
@@ -45,7 +45,7 @@ def tune(
     engine: AnyEngineName = STUDY_ENGINE,
     vary: Optional[Mapping[str, Values]] = None,
     budget: int = 300,
-    **options: Unpack[Keywords],
+    **options: Unpack[ControlKeywords],
 ) -> Tuning:
     """Search for the gains of a controller.
 
@@ -93,7 +93,7 @@ def tune(
     KeyboardInterrupt
         With the attribute `tuning`, the best result so far, or None.
     """
-    shared = Options(**options)
+    shared = ControlOptions(**options)
     flown = to_list(model), to_list(references)
     judged = to_list(held_out), to_list(held_out_models)
     chosen = None if only is None else to_list(only)

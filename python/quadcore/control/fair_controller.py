@@ -1,0 +1,69 @@
+"""User-defined controller that receives a view of the vehicle instead of the simulation."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict
+
+from .. import _core
+from .controller import SENSED, check_callable
+from .vehicle import Vehicle
+
+PRIVILEGED = " (privileged)"
+"""Mark in the label of a controller that receives the whole simulation."""
+
+
+class FairController:
+    """Wrap a user-defined controller; its attributes are those of the wrapped one.
+
+    `reset` receives a `Vehicle`. The odometry gives access to the topics of sensors only.
+
+    Raises
+    ------
+    InputError
+        If the object cannot be called as a controller.
+    """
+
+    reads_sensors_only = True
+
+    def __init__(self, controller: Any) -> None:
+        check_callable(controller)
+        self.__dict__.update(_controller=controller)
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "_controller":  # copy and pickle ask before it is set
+            raise AttributeError(name)
+        return getattr(self._controller, name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        setattr(self._controller, name, value)
+
+    def reset(self, simulation: Any) -> None:
+        """Reset the controller with a view of the vehicle."""
+        reset = getattr(self._controller, "reset", None)
+        if reset is not None:
+            reset(simulation if isinstance(simulation, Vehicle) else Vehicle(simulation))
+
+    def __call__(self, t: float, state: _core.Odometry, reference: Any) -> Any:
+        """Call the controller."""
+        return self._controller(t, state, reference)
+
+
+class SensedOdometry(_core.Odometry):
+    """Odometry that gives access to the topics of sensors only."""
+
+    def __init__(self, simulation: _core.Simulation, vehicle: Vehicle) -> None:
+        super().__init__(simulation, SENSED)
+        self._vehicle = vehicle
+
+    @property
+    def topic(self) -> Callable[[str], Dict[str, float]]:
+        """Function that returns the message of a sensor's topic by its name."""
+        return self._vehicle.topic
+
+
+def make_sense(controller: Any, simulation: Any) -> Callable[[], _core.Odometry]:
+    """Return the function that reads the odometry for a controller."""
+    if not getattr(controller, "reads_sensors_only", False):
+        return lambda: _core.Odometry(simulation, SENSED)
+    vehicle = Vehicle(simulation)
+    return lambda: SensedOdometry(simulation, vehicle)
