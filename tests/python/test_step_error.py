@@ -48,6 +48,22 @@ def test_a_random_flight_and_user_code_have_none():
     assert measure_step_error(plan_of(engine="lagrange")) is None
 
 
+def test_flights_beyond_the_time_limit_have_none():
+    slow = measure_step_error(plan_of(engine="gazebo11", duration=10.0, time_limit=0.01))
+    assert slow.position is None and "exceeds the time limit" in slow.describe()
+
+
+def test_an_interrupt_keeps_the_tables(in_empty_folder, monkeypatch, capsys):
+    def interrupt(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("quadcore.studies.evaluate.output.measure_step_error", interrupt)
+    command = [*FLY, "--controller", "pd", "--reference", "hover", "--no-plots", "--quiet"]
+    assert main([*command, "--out", "out"]) == 130
+    assert "pd,hover" in Path("out/table.csv").read_text()
+    assert json.loads(Path("out/evaluation.json").read_text())["step_error"] is None
+
+
 def test_page_and_json_contain_the_error(in_empty_folder):
     command = [*FLY, "--controller", "pd", "--reference", "hover", "--no-plots", "--quiet"]
     assert main([*command, "--out", "out"]) == 0

@@ -16,13 +16,13 @@ _LENGTHS.update(yaw=1, yaw_rate=1, yaw_acceleration=1)
 
 
 class ReferenceSamples(SimpleNamespace):
-    """Reference at several times: arrays with the members of a `Reference`.
+    """Reference at several times, or of several vehicles: arrays of the members of a `Reference`.
 
     Attributes
     ----------
     position, velocity, acceleration, jerk, snap : ndarray (..., 3)
         Position of the frame's origin in the world and its derivatives, m, s. Times of shape
-        ``(...)`` give this shape.
+        ``(...)`` give this shape, n vehicles ``(n,)``.
     yaw, yaw_rate, yaw_acceleration : ndarray (...)
         Yaw and its derivatives, rad, s.
     """
@@ -35,6 +35,13 @@ class ReferenceSamples(SimpleNamespace):
     yaw: np.ndarray
     yaw_rate: np.ndarray
     yaw_acceleration: np.ndarray
+
+    @classmethod
+    def repeat(cls, wanted: Any, n: int) -> ReferenceSamples:
+        """Return the same reference for n vehicles, with the members that it has."""
+        found = {name: getattr(wanted, name) for name in _LENGTHS if hasattr(wanted, name)}
+        arrays = {name: np.asarray(value, dtype=float) for name, value in found.items()}
+        return cls(**{name: np.broadcast_to(x, (n, *x.shape)) for name, x in arrays.items()})
 
 
 def sample_shape(shape: _core.ReferenceShape, times: Any) -> Any:

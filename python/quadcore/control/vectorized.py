@@ -8,6 +8,7 @@ import numpy as np
 
 from .._core import InputError
 from ..support.arguments import shorten
+from .reference_ahead import ReferenceSamples
 
 
 class VectorState(NamedTuple):
@@ -31,33 +32,6 @@ class VectorState(NamedTuple):
     def of_one(cls, state: Any) -> VectorState:
         """Return the state of one vehicle."""
         return cls(*(np.array(getattr(state, name), dtype=float)[None] for name in cls._fields))
-
-
-class VectorReference(NamedTuple):
-    """References of n vehicles; the members are those of `Reference`."""
-
-    position: np.ndarray
-    """World axes, m; (n, 3)."""
-    velocity: np.ndarray
-    """World axes, m/s; (n, 3)."""
-    acceleration: np.ndarray
-    """World axes, m/s^2; (n, 3)."""
-    jerk: np.ndarray
-    """World axes, m/s^3; (n, 3)."""
-    snap: np.ndarray
-    """World axes, m/s^4; (n, 3)."""
-    yaw: np.ndarray
-    """rad; (n,)."""
-    yaw_rate: np.ndarray
-    """rad/s; (n,)."""
-    yaw_acceleration: np.ndarray
-    """rad/s^2; (n,)."""
-
-    @classmethod
-    def repeat(cls, wanted: Any, n: int) -> VectorReference:
-        """Return the same reference for n vehicles."""
-        found = [np.asarray(getattr(wanted, name), dtype=float) for name in cls._fields]
-        return cls(*(np.broadcast_to(each, (n, *each.shape)) for each in found))
 
 
 def is_vectorized(controller: Any) -> bool:
@@ -117,7 +91,7 @@ class CommandAll:
         """Return the commands, shape (n, rotors), for measured states, shape (n, 13)."""
         wanted = None
         if self._reference is not None:
-            wanted = VectorReference.repeat(self._reference(t), self._n)
+            wanted = ReferenceSamples.repeat(self._reference(t), self._n)
         answer = self._controller(t, VectorState.of_rows(rows), wanted)
         commands = check_commands(answer, self._n, len(self._limits))
         self.calls += 1
@@ -127,7 +101,7 @@ class CommandAll:
 
 def command_one(controller: Any, t: float, state: Any, wanted: Any, width: int) -> Sequence[float]:
     """Return the command of a vectorized controller for one vehicle."""
-    reference = None if wanted is None else VectorReference.repeat(wanted, 1)
+    reference = None if wanted is None else ReferenceSamples.repeat(wanted, 1)
     row: Sequence[float] = check_commands(
         controller(t, VectorState.of_one(state), reference), 1, width
     )[0]

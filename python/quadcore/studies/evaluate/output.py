@@ -64,11 +64,8 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
 
     remove_plots(folder, "evaluation.json", is_plot)
     remove_flights(folder)
-    # Results first: drawing is slow and can fail.
-    is_whole = all(row["failure"] != NOT_FLOWN for row in evaluation.table)
-    step_error = measure_step_error(plan) if is_whole else None
-    content = _make_content(evaluation, plan)
-    content["step_error"] = None if step_error is None else step_error._asdict()
+    # Results first: further flights and drawing are slow and can fail.
+    content = {**_make_content(evaluation, plan), "step_error": None}
     tables = {
         "table.csv": make_csv(_table_rows(evaluation.table)),
         "evaluation.json": make_json(content),
@@ -78,6 +75,9 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     }
     written = save_files(folder, tables)
     written += write_drawn_flights(evaluation, plan, folder)
+    is_whole = all(row["failure"] != NOT_FLOWN for row in evaluation.table)
+    step_error = measure_step_error(plan) if is_whole else None
+    content["step_error"] = None if step_error is None else step_error._asdict()
     images = draw(evaluation, plan.list_events()) if plots else {}
     written += save_plots(folder, "evaluation.json", content, images)
     page = folder / "report.html"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Mapping, NamedTuple, Optional
 
 import numpy as np
@@ -12,6 +13,8 @@ from ...simulation.engines import exerts_wrenches
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support.warning import suppress_warnings
+from ..executor import call_apart
+from ..time_limit import time_limit
 from .intervals import EQUAL
 from .plan import Plan
 
@@ -28,13 +31,14 @@ class StepError(NamedTuple):
     duration: float
     """Compared part of the flight, s."""
     position: Optional[float]
-    """Maximum change of the position, m; None if the flight is random or fails."""
+    """Maximum change of the position, m; None if the flight is random, fails, or is too slow."""
 
     def describe(self) -> str:
         """Describe the error in one line."""
         if self.position is None:
             return (
-                "The numerical error of the plant is not measured: the flight is random or fails."
+                "The numerical error of the plant is not measured: the flight is random, fails, or "
+                "exceeds the time limit."
             )
         return (
             f"Numerical error of the plant: {self.position:.2g} m, the maximum change of the "
@@ -45,6 +49,8 @@ class StepError(NamedTuple):
 
 def measure_step_error(plan: Plan) -> Optional[StepError]:
     """Repeat the start of the first flight of a built-in controller at half the step.
+
+    The flights run in a process of their own, each within the time limit of the plan.
 
     Parameters
     ----------
@@ -60,7 +66,8 @@ def measure_step_error(plan: Plan) -> Optional[StepError]:
         if exerts_wrenches(flight.engine):
             short = replace(flight, duration=min(_LONGEST, flight.duration))
             named = f"{_name(names)} on {plan.control.references[0]}"
-            return StepError(named, short.step, short.duration, _compare(short))
+            change = call_apart(partial(_compare, short, plan.options.time_limit))
+            return StepError(named, short.step, short.duration, change)
     return None
 
 
@@ -68,16 +75,26 @@ def _name(names: Mapping[str, str]) -> str:
     return f"{names['controller']} ({names['model']}, {names['engine'].partition(',')[0]})"
 
 
-def _compare(flight: FlightPlan) -> Optional[float]:
-    """Return the maximum change of the position, m; None for a random or failed flight."""
+def _compare(flight: FlightPlan, limit: float) -> Optional[float]:
+    """Return the maximum change of the position, m; None for a random or failed flight.
+
+    Parameters
+    ----------
+    flight
+        Flight at the step of the study.
+    limit
+        Wall-clock limit of each flight, s.
+    """
     half = replace(flight, dt=flight.step / 2, log_every=2 * flight.log_every)
     other_seed = replace(flight, seed=flight.seed + 1)
+
+    def fly(plan: FlightPlan) -> Log:
+        with time_limit(limit), suppress_warnings():
+            return plan.fly()
+
     try:
-        with suppress_warnings():
-            log = flight.fly()
-            if _change(log, other_seed.fly()) >= EQUAL:
-                return None
-            return _change(log, half.fly())
+        log = fly(flight)
+        return None if _change(log, fly(other_seed)) >= EQUAL else _change(log, fly(half))
     except QuadcoreError:
         return None
 
