@@ -99,7 +99,7 @@ def show(evaluation: Evaluation, files: list[Path], notes: Sequence[str] = ()) -
 
     console = terminal.make_console()
     lines = format_rows(evaluation)
-    shown = choose_columns(lines)
+    shown = choose_columns(lines, evaluation.units)
     table = terminal.make_table(*shown.values(), "")
     for line in lines[:_ROWS]:
         table.add_row(*(line[name] for name in shown), line["best"])

@@ -44,6 +44,8 @@ class Controller(Protocol):
     delay : float, default 0
         Time from a call until its command reaches the motors, s, rounded up to whole steps. The
         command of the first call acts at once.
+    log : dict of str to float, optional
+        Columns of the log: each value after each call. The names must not change in a flight.
     inner_loop : InnerLoop, optional
         Converts a returned `AttitudeThrust`, `RatesThrust` or `WrenchThrust` to rotor speeds.
         Default: an inner loop with default gains.

@@ -15,6 +15,7 @@ from ..control.controller import SENSED, ControllerLike, check_callable
 from ..control.fair_controller import make_sense
 from ..control.inner_loop import SET_POINTS, InnerLoop
 from ..control.keywords import ReferenceName
+from ..control.own_columns import OwnColumns
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
 from ..control.reference_ahead import add_future
 from ..control.vectorized import CommandAll, command_one, is_vectorized
@@ -29,7 +30,7 @@ class ControllerPilot(Pilot):
     Attributes
     ----------
     columns : sequence of str
-        Names of the columns that the log has for the reference.
+        Names of the columns that the log has for the reference, and for the controller's `log`.
     is_vectorized : bool
         Whether the controller commands several vehicles at once.
 
@@ -67,7 +68,8 @@ class ControllerPilot(Pilot):
                 f"controller: its inner_loop is {shorten(inner_loop)}. Give a quadcore.InnerLoop."
             )
         self._inner_loop = InnerLoop() if inner_loop is None else inner_loop
-        self.columns = _COLUMNS if reference is not None else ()
+        self._own_columns = OwnColumns(controller)
+        self.columns = (*(_COLUMNS if reference is not None else ()), *self._own_columns.columns)
         self._controller: Any = controller
         self._reference = reference
         self._timed = timed
@@ -125,6 +127,7 @@ class ControllerPilot(Pilot):
     def reset(self, simulation: _core.Simulation) -> None:
         """Reset the controller."""
         self._inner_loop.leave()
+        self._own_columns.clear()
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             reset(simulation)
@@ -180,7 +183,19 @@ class ControllerPilot(Pilot):
             inner_loop.leave()
             return speeds
 
-        return call_vectorized if self.is_vectorized else call
+        return self._note_columns(call_vectorized if self.is_vectorized else call, simulation)
+
+    def _note_columns(self, call: Callable[[], Any], simulation: Any) -> Callable[[], Any]:
+        """Note the controller's own columns after each call, if there are any."""
+        if not self._own_columns.columns:
+            return call
+
+        def call_and_note() -> Any:
+            t, speeds = simulation.time, call()
+            self._own_columns.note(t)
+            return speeds
+
+        return call_and_note
 
     def command_all(self, n: int) -> CommandAll:
         """Return the function by which a vectorized controller commands n vehicles."""
@@ -189,11 +204,14 @@ class ControllerPilot(Pilot):
         return CommandAll(self._controller, reference, n, self._limits)
 
     def add_columns(self, table: np.ndarray) -> np.ndarray:
-        """Add the columns of the reference to rows of the state."""
-        if self._reference is None:
-            return table
-        wanted = self.sample(table[:, 0])
-        return np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
+        """Add the columns of the reference and of the controller to rows of the state."""
+        parts = [table]
+        if self._reference is not None:
+            wanted = self.sample(table[:, 0])
+            parts += [wanted, table[:, 1:4] - wanted[:, :3]]
+        if self._own_columns.columns:
+            parts.append(self._own_columns.sample(table[:, 0]))
+        return table if len(parts) == 1 else np.hstack(parts)
 
     def sample(self, times: np.ndarray) -> np.ndarray:
         """Return position and yaw of the reference at times; shape (n, 4)."""

@@ -11,6 +11,7 @@ from .. import _core
 from .._core import Model, QuadcoreError, World
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED
+from ..control.own_columns import list_names
 from ..control.references import Shape
 from ..control.vectorized import is_vectorized
 from ..simulation.controller_pilot import ControllerPilot
@@ -21,6 +22,7 @@ from ..simulation.state import State
 from ..simulation.trajectory import find_speed_limit, per_command
 from ..support.warning import suppress_warnings
 from .time_limit import time_limit
+from .tracking_errors import sample_flat_states
 from .tracking_metrics import RotorData
 
 ENGINES = ("eigen", "gazebo11")
@@ -62,6 +64,8 @@ class FlightRecord(NamedTuple):
     world: World
     elapsed: float = 0.0
     """Wall-clock duration, s."""
+    flat_states: Optional[np.ndarray] = None
+    """Result of `sample_flat_states` at the times of the log."""
 
 
 def make_record(
@@ -89,7 +93,7 @@ def make_record(
 
 
 def fly_group(
-    described: Sequence[Callable[[], FlightPlan]], limit: float
+    described: Sequence[Callable[[], FlightPlan]], limit: float, needs_flat_states: bool = False
 ) -> Optional[List[FlightRecord]]:
     """Simulate flights on one batch, bit-identical to single flights.
 
@@ -99,6 +103,8 @@ def fly_group(
         Functions that return the plans of the flights.
     limit
         Wall-clock limit of each flight, s.
+    needs_flat_states
+        Whether the records have `flat_states`.
 
     Returns
     -------
@@ -113,9 +119,9 @@ def fly_group(
             if not _are_alike(plans):
                 return None
             if _are_built_in(plans):
-                found = _fly(plans)
+                found = _fly(plans, needs_flat_states)
             elif _differ_in_seed(plans):
-                found = _fly_vectorized(plans)
+                found = _fly_vectorized(plans, needs_flat_states)
             else:
                 return None
     except QuadcoreError:
@@ -165,6 +171,7 @@ def _differ_in_seed(plans: Sequence[FlightPlan]) -> bool:
     first = plans[0]
     return all(
         is_vectorized(plan.controller)
+        and not list_names(plan.controller)  # their values are those of one vehicle
         and plan.model is first.model
         and plan.parameters == first.parameters
         and plan.spawn == first.spawn
@@ -191,6 +198,7 @@ class _Kind:
         self.simulation = simulation  # the controller refers to it
         self._per_command = per_command(simulation)
         self._beside = np.empty((0, 0))
+        self._flat_states: Optional[np.ndarray] = None
 
     def make_log(self, table: np.ndarray) -> Log:
         """Make the log of a flight from its rows, which begin at the same times."""
@@ -201,6 +209,13 @@ class _Kind:
         log = Log.of_rows(whole, self.columns, {}, self.simulation.ignored)
         log.per_command = self._per_command
         return log
+
+    def sample_flat_states(self, times: np.ndarray) -> Optional[np.ndarray]:
+        """Return the result of `sample_flat_states`; all flights have rows at the same times."""
+        known = self._flat_states
+        if known is None or len(known) < len(times):
+            known = self._flat_states = sample_flat_states(self.simulation, self.plan, times)
+        return None if known is None else known[: len(times)]
 
 
 def _make_row(state: State) -> np.ndarray:
@@ -249,7 +264,7 @@ def _make_batch(plans: Sequence[FlightPlan], kinds: Sequence[_Kind]) -> _core.Ba
     return batch
 
 
-def _fly(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
+def _fly(plans: Sequence[FlightPlan], needs_flat_states: bool) -> List[FlightRecord]:
     first = plans[0]
     found: Dict[Any, _Kind] = {}
     kinds: List[_Kind] = []
@@ -271,12 +286,14 @@ def _fly(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
         range(len(kinds)),
     )
     failures = batch.failures
+    logs = [kind.make_log(tables[i, : rows[i]]) for i, kind in enumerate(kinds)]
     return [
         make_record(
             kind.pilot,
             kind.simulation,
             plans[i],
-            log=kind.make_log(tables[i, : rows[i]]),
+            log=logs[i],
+            flat_states=kind.sample_flat_states(logs[i].time) if needs_flat_states else None,
             failure=failures[i],
             calls=int(calls[i]),
             saturated=int(saturated[i]),
@@ -288,7 +305,7 @@ def _fly(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
     ]
 
 
-def _fly_vectorized(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
+def _fly_vectorized(plans: Sequence[FlightPlan], needs_flat_states: bool) -> List[FlightRecord]:
     first, n = plans[0], len(plans)
     kind = _Kind(first)
     try:
@@ -305,12 +322,14 @@ def _fly_vectorized(plans: Sequence[FlightPlan]) -> List[FlightRecord]:
     finally:
         kind.pilot.close()
     failures = batch.failures
+    logs = [kind.make_log(tables[i, : rows[i]]) for i in range(n)]
     return [
         make_record(
             kind.pilot,
             kind.simulation,
             plans[i],
-            log=kind.make_log(tables[i, : rows[i]]),
+            log=logs[i],
+            flat_states=kind.sample_flat_states(logs[i].time) if needs_flat_states else None,
             failure=failures[i],
             calls=command_all.calls,
             saturated=int(command_all.saturated[i]),

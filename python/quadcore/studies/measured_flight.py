@@ -19,10 +19,12 @@ from ..simulation.log import Log
 from ..simulation.simulation import Simulation
 from ..support.warning import suppress_warnings
 from .controller_timing import summarise_durations
+from .criteria import DEFAULT, Criteria
 from .grouped_flights import FlightRecord, fly_group, make_record
 from .step_response import step_response
 from .table import NOT_FLOWN
 from .time_limit import time_limit
+from .tracking_errors import sample_flat_states
 from .tracking_metrics import UNITS, describe_failure, measure
 
 NAN = dict.fromkeys(UNITS, float("nan"))
@@ -83,11 +85,15 @@ def fly_and_measure(
     watch: bool = False,
 ) -> Outcome:
     """Simulate a flight and compute its metrics; arguments of `fly_alone` and `measure_record`."""
-    return measure_record(fly_alone(described, most, keep, timed), keep, watch)
+    return measure_record(fly_alone(described, most, keep, timed), keep=keep, watch=watch)
 
 
 def fly_alone(
-    described: Callable[[], FlightPlan], most: float, keep: bool = False, timed: bool = True
+    described: Callable[[], FlightPlan],
+    most: float,
+    keep: bool = False,
+    timed: bool = True,
+    needs_flat_states: bool = False,
 ) -> FlightRecord:
     """Simulate a flight.
 
@@ -101,6 +107,8 @@ def fly_alone(
         Whether to log the topics of the animation.
     timed
         Whether to time each update of the controller, which slows the flight.
+    needs_flat_states
+        Whether the record has `flat_states`.
 
     Raises
     ------
@@ -128,11 +136,15 @@ def fly_alone(
                 )
         except FlightError as error:
             failure = str(error)
+        log, flat_states = rows.log(), None
+        if needs_flat_states:
+            flat_states = sample_flat_states(flight.simulation(), flight, log.time)
         return make_record(
             pilot,
             simulation,
             flight,
-            log=rows.log(),
+            log=log,
+            flat_states=flat_states,
             failure=failure,
             calls=pilot.updates,
             saturated=pilot.saturated,
@@ -143,20 +155,27 @@ def fly_alone(
         )
 
 
-def measure_record(flight: FlightRecord, keep: bool = False, watch: bool = False) -> Outcome:
+def measure_record(
+    flight: FlightRecord,
+    criteria: Criteria = DEFAULT,
+    keep: bool = False,
+    watch: bool = False,
+) -> Outcome:
     """Compute the metrics of a flight, perhaps in another process than that of its controller.
 
     Parameters
     ----------
     flight
         Result of `fly_alone` or `fly_group`.
+    criteria
+        Limit of a failure, constraints and metrics.
     keep
         Whether to keep a decimated log.
     watch
         Whether to keep the motion.
     """
     log = flight.log
-    failure = describe_failure(log) or flight.failure
+    failure = describe_failure(log, criteria.failure_distance) or flight.failure
     measures = NAN
     if not failure:
         share = flight.saturated / max(1, flight.calls)
@@ -165,6 +184,7 @@ def measure_record(flight: FlightRecord, keep: bool = False, watch: bool = False
         measures = {
             **measure(log, share, flight.rotors, flight.variation),
             **clearance.measures(),
+            **criteria.measure(flight),
         }
     call, slow_call = summarise_durations(flight.seconds)
     outcome = Outcome(
@@ -194,7 +214,7 @@ def measure_record(flight: FlightRecord, keep: bool = False, watch: bool = False
 
 
 def fly_together(
-    described: Sequence[Callable[[], FlightPlan]], most: float
+    described: Sequence[Callable[[], FlightPlan]], most: float, criteria: Criteria = DEFAULT
 ) -> Optional[List[Outcome]]:
     """Simulate flights on one batch and compute their metrics, bit-identical to single flights.
 
@@ -204,6 +224,8 @@ def fly_together(
         Functions that return the plans.
     most
         Wall-clock limit of each flight, s.
+    criteria
+        As for `measure_record`.
 
     Returns
     -------
@@ -211,8 +233,8 @@ def fly_together(
         Outcomes; None if only single flights are possible. The durations of the controller are
         those of every sixteenth update.
     """
-    flights = fly_group(described, most)
-    return None if flights is None else [measure_record(flight) for flight in flights]
+    flights = fly_group(described, most, criteria.needs_flat_states)
+    return None if flights is None else [measure_record(flight, criteria) for flight in flights]
 
 
 def _animated_topics(simulation: Simulation) -> List[str]:

@@ -34,6 +34,9 @@ from ..simulation.scenarios import NONE
 from ..support import arguments, parse
 from ..support.arguments import Kind
 from ..support.values import SPAWN, Number, Value
+from .criteria import CONSTRAINTS, Criteria, Metric
+from .tracking_errors import METRICS as TRACKING
+from .tracking_metrics import FAILURE_DISTANCE
 
 Names = Union[str, Path, Sequence[Union[str, Path]]]
 Progress = Callable[[int, int], None]
@@ -218,16 +221,51 @@ class ControlOptions(Options):
         "the results mark them",
         kind=arguments.FLAG, without="false",
     ))  # fmt: skip
+    failure_distance: float = field(default=FAILURE_DISTANCE, metadata=_describe(
+        STUDY, "failure-distance", "M", "tracking error in m at which a flight has failed",
+        parse.positive, arguments.DISTANCE,
+    ))  # fmt: skip
 
 
 class ControlKeywords(Keywords, total=False):
     """`ControlOptions` as keyword arguments, for type checkers."""
 
     privileged: bool
+    failure_distance: float
 
 
 @dataclass(frozen=True)
-class EvaluateOptions(ControlOptions):
+class MeasureOptions(ControlOptions):
+    """Options of studies that measure flights."""
+
+    constraints: Optional[Mapping[str, Any]] = field(default=None, metadata=_describe(
+        STUDY, "constraint", "NAME=LIMIT",
+        f"measure the time in violation of a constraint: {', '.join(CONSTRAINTS)}; geofence "
+        "takes XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
+        parse.assignment(r"([^=]+)=(.+)", "NAME=LIMIT"),
+        arguments.or_none(arguments.NAMED), repeats=True,
+    ))  # fmt: skip
+    metrics: Sequence[Metric] = field(default=(), metadata=_describe(
+        STUDY, "metric", "NAME",
+        f"further metric: {', '.join(TRACKING)}; or your function of the log, FILE.py:NAME or "
+        "MODULE:NAME",
+        kind=arguments.METRICS, repeats=True,
+    ))  # fmt: skip
+
+    def make_criteria(self) -> Criteria:
+        """Return the criteria; raises `InputError` if one does not exist."""
+        return Criteria.make(self.failure_distance, self.constraints, self.metrics)
+
+
+class MeasureKeywords(ControlKeywords, total=False):
+    """`MeasureOptions` as keyword arguments, for type checkers."""
+
+    constraints: Optional[Mapping[str, Any]]
+    metrics: Sequence[Metric]
+
+
+@dataclass(frozen=True)
+class EvaluateOptions(MeasureOptions):
     """Options of `evaluate`."""
 
     duration: float = field(default=30.0, metadata=change_option("duration"))
@@ -261,7 +299,7 @@ class CompareOptions(Options):
 
 
 @dataclass(frozen=True)
-class SweepOptions(ControlOptions):
+class SweepOptions(MeasureOptions):
     """Options of `sweep`."""
 
     spawn: Optional[Sequence[Number]] = field(

@@ -13,7 +13,7 @@ from ..simulation.recording import TAIL
 from ..support.rotation import compute_tilts, to_roll_pitch_yaw
 
 FAILURE_DISTANCE = 5.0
-"""Tracking error at which a flight counts as failed, m."""
+"""Default tracking error at which a flight counts as failed, m."""
 
 UNITS = {
     "rms_position": "m",
@@ -76,15 +76,15 @@ class RotorData(NamedTuple):
         return cls(rotor.torque_coefficient, rotor.slowdown)
 
 
-def find_failure_time(log: Log) -> Optional[float]:
-    """Return the first time at which the tracking error exceeds `FAILURE_DISTANCE`, s, or None."""
-    away = np.flatnonzero(~(compute_errors(log) <= FAILURE_DISTANCE))
+def find_failure_time(log: Log, distance: float = FAILURE_DISTANCE) -> Optional[float]:
+    """Return the first time at which the tracking error exceeds a distance [m], s, or None."""
+    away = np.flatnonzero(~(compute_errors(log) <= distance))
     return float(log.time[away[0]]) if len(away) else None
 
 
-def describe_failure(log: Log) -> str:
-    """Describe when and where the tracking error exceeds `FAILURE_DISTANCE`; "" if never."""
-    time = find_failure_time(log)
+def describe_failure(log: Log, distance: float = FAILURE_DISTANCE) -> str:
+    """Describe when and where the tracking error exceeds a distance [m]; "" if never."""
+    time = find_failure_time(log, distance)
     if time is None:
         return ""
     x, y, z = log.position[np.flatnonzero(log.time == time)[0]]

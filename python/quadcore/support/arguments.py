@@ -83,6 +83,10 @@ def _are_guides(value: Any) -> bool:
     return all(isinstance(one, str) or callable(one) for one in guides)
 
 
+def _are_metrics(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and all(_is_text(x) or callable(x) for x in value)
+
+
 def _are_named(value: Any) -> bool:
     return isinstance(value, Mapping) and all(isinstance(name, str) for name in value)
 
@@ -134,6 +138,8 @@ POSITIVE: Kind = (
     lambda value: isinstance(value, Real) and 0 < float(value) < math.inf,
     "seconds, more than 0",
 )
+DISTANCE: Kind = (POSITIVE[0], "metres, more than 0")
+METRICS: Kind = (_are_metrics, "names, or functions that are called as function(log)")
 LAG: Kind = (
     lambda value: isinstance(value, Real) and 0 <= float(value) <= 10,
     "seconds, from 0 to 10",

@@ -47,15 +47,25 @@ def names_file(text: str) -> bool:
 
 
 def find_controller(text: str, make: Callable[[Any], Any]) -> Any:
-    """Import a controller.
+    """Import a controller, as `find_object` does; raises also if it cannot be called as one."""
+    controller = find_object(f"controller '{text}'", text, make)
+    if not callable(controller):
+        raise InputError(f"controller '{text}': it cannot be called as {_FORM}. Define it so.")
+    return controller
+
+
+def find_object(who: str, text: str, make: Callable[[Any], Any]) -> Any:
+    """Import an object of the user.
 
     Parameters
     ----------
+    who
+        Kind and name for messages.
     text
         Name as for `split_name`. Modules in the working folder are found. A file without NAME must
-        define one class with a method ``__call__``, or one function.
+        define one class with a method ``__call__``, or one function, that is a controller.
     make
-        Makes the controller from the class or object that has been found.
+        Makes the result from the class or object that has been found.
 
     Raises
     ------
@@ -64,7 +74,7 @@ def find_controller(text: str, make: Callable[[Any], Any]) -> Any:
     """
     place, name, _ = split_name(text)
     if not place:
-        raise InputError(f"controller '{text}': no name is given. Write MODULE:NAME or FILE.py.")
+        raise InputError(f"{who}: no name is given. Write MODULE:NAME or FILE.py.")
     is_file = place.endswith(".py")
     if is_file:
         check_regular(Path(place))
@@ -72,39 +82,36 @@ def find_controller(text: str, make: Callable[[Any], Any]) -> Any:
     folder = os.path.dirname(os.path.realpath(place)) if is_file else os.getcwd()
     try:
         with _importing_from(folder):
-            controller = make(find(text, place, name))
+            return make(find(who, place, name))
     except (InputError, KeyboardInterrupt, MemoryError):
         raise
     except BaseException as error:  # SystemExit, too
-        raise _describe_failure(text, error) from error
-    if not callable(controller):
-        raise InputError(f"controller '{text}': it cannot be called as {_FORM}. Define it so.")
-    return controller
+        raise InputError(f"{who}: {describe_error(error)}") from error
 
 
-def _find_in_module(text: str, module: str, name: str) -> Any:
+def _find_in_module(who: str, module: str, name: str) -> Any:
     try:
         return getattr(importlib.import_module(module), name)
     except ModuleNotFoundError as error:
         if not f"{module}.".startswith(f"{error.name}."):
             raise
         raise InputError(
-            f"controller '{text}': there is no module '{module}' here or on PYTHONPATH. "
+            f"{who}: there is no module '{module}' here or on PYTHONPATH. "
             "Correct its name, or name its file."
         ) from error
     except AttributeError as error:
         if module not in sys.modules or hasattr(sys.modules[module], name):
             raise
         raise InputError(
-            f"controller '{text}': module '{module}' has no '{name}'. Name one of its classes."
+            f"{who}: module '{module}' has no '{name}'. Name one of its classes or functions."
         ) from error
 
 
-def _find_in_file(text: str, file: str, name: str) -> Any:
+def _find_in_file(who: str, file: str, name: str) -> Any:
     module = _import_file(file)
     if name:
         if not hasattr(module, name):
-            raise InputError(f"controller '{text}': {file} has no '{name}'")
+            raise InputError(f"{who}: {file} has no '{name}'")
         return getattr(module, name)
     own = [x for x in vars(module).values() if getattr(x, "__module__", "") == module.__name__]
     classes = [x for x in own if inspect.isclass(x) and _defines_call(x)]
@@ -112,7 +119,7 @@ def _find_in_file(text: str, file: str, name: str) -> Any:
     if len(found) != 1:
         names = ", ".join(f"{file}:{each.__name__}" for each in found)
         what = f"Name one: {names}." if found else f"Define a class or function {_FORM}."
-        raise InputError(f"controller '{text}': {file} has {len(found)} controllers. {what}")
+        raise InputError(f"{who}: {file} has {len(found)} controllers. {what}")
     return found[0]
 
 
@@ -164,7 +171,3 @@ def describe_error(error: BaseException) -> str:
         place = traceback.extract_tb(error.__traceback__)[-1]
         kind, reason, file, line = type(error).__name__, f"{error}", place.filename, place.lineno
     return " ".join(f"{kind}: {reason}".split()) + f" ({file}:{line})"
-
-
-def _describe_failure(text: str, error: BaseException) -> InputError:
-    return InputError(f"controller '{text}': {describe_error(error)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from math import nan
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -33,18 +34,19 @@ from ..executor import contain_errors, count_cores, run_contained
 from ..grouped_flights import MOST_VECTORIZED, FlightRecord, fly_group, share_out, split
 from ..measured_flight import Outcome, fly_alone, measure_record
 from ..options import (
-    ControlKeywords,
     EvaluateOptions,
+    MeasureKeywords,
     Names,
     Progress,
     accept_options,
     choose_engines,
 )
 from ..table import count_outcomes
+from ..time_limit import time_limit
+from ..tracking_metrics import UNITS
 from .margins import MarginSearch
 from .plan import Plan
 from .poles import compute_poles, has_poles
-from .seed_statistics import JUDGED as JUDGED
 from .seed_statistics import summarise_seeds
 from .summary_table import choose_columns, format_rows
 from .trial import Trial
@@ -65,7 +67,7 @@ class Evaluation(NamedTuple):
         success) and each metric, NaN after a failure.
     groups : list of dict
         Row per combination, over its seeds: flights, not_flown and failure_rate. For each of
-        `JUDGED`, mean and interval (low, high) of the successful flights, and cvar, in which a
+        `units`, mean and interval (low, high) of the successful flights, and cvar, in which a
         failure counts as infinite. The mean difference from the first controller, paired by seed,
         with its interval and the number of pairs. Cohen's d of the differences of the last 10 s,
         effect_size. is_random, whether seeds change the flights (None if unknown). For is_best and
@@ -76,6 +78,8 @@ class Evaluation(NamedTuple):
         Row per axis of each cascaded controller in hover; see `compute_poles`.
     outcomes : sequence of Outcome
         Outcome of each flight. Those of the first seed contain a log, for at most 60 combinations.
+    units : mapping of str to str
+        Unit of each metric, including those that `constraints` and `metrics` add.
     """
 
     table: List[Dict[str, Any]]
@@ -83,6 +87,7 @@ class Evaluation(NamedTuple):
     margins: List[Dict[str, Any]]
     poles: List[Dict[str, Any]]
     outcomes: Sequence[Outcome]
+    units: Mapping[str, str] = UNITS
 
     @property
     def drawn(self) -> Dict[int, Outcome]:
@@ -94,7 +99,7 @@ class Evaluation(NamedTuple):
 
     def _repr_html_(self) -> str:
         lines = format_rows(self)
-        shown = {**choose_columns(lines), "best": ""}
+        shown = {**choose_columns(lines, self.units), "best": ""}
         rows = [[line[name] for name in shown] for line in lines[:SHOWN_ROWS]]
         return html_title(self) + html_table(list(shown.values()), rows, len(lines))
 
@@ -116,7 +121,7 @@ def evaluate(
     engine: Optional[AnyEngineName] = None,
     vary: Optional[Mapping[str, Values]] = None,
     margins: bool = False,
-    **options: Unpack[ControlKeywords],
+    **options: Unpack[MeasureKeywords],
 ) -> Evaluation:
     """Measure the tracking error of controllers along references.
 
@@ -213,15 +218,22 @@ class _Flights:
         """Summarise the flights so far."""
         plan, outcomes = self._plan, self.outcomes
         names = [plan.name_case(case) for case in plan]
+        units = plan.criteria.units
         return Evaluation(
             [
-                {**name, "failure": outcome.failure, **outcome.measures}
+                {
+                    **name,
+                    "failure": outcome.failure,
+                    **dict.fromkeys(units, nan),
+                    **outcome.measures,
+                }
                 for name, outcome in zip(names, outcomes)
             ],
-            summarise_seeds([case[:-1] for case in plan], names, outcomes),
+            summarise_seeds([case[:-1] for case in plan], names, outcomes, units),
             [] if self._searches is None else self._searches.list_rows(),
             poles,
             outcomes,
+            units,
         )
 
     def _fly_trials(self, trials: Sequence[Trial]) -> List[Outcome]:
@@ -251,7 +263,7 @@ class _Flights:
         Flights in `drawn` keep their logs, and all their motion if watched. The metrics of
         user-defined controllers are computed in this process, which does not run their code.
         """
-        options = self._plan.options
+        options, criteria = self._plan.options, self._plan.criteria
         expected = len(self._plan) + (self._searches.expected if self._searches else 0)
         total = max(self._done + sum(map(len, tasks)), expected)
         apart = self._plan.control.runs_user_code
@@ -259,17 +271,24 @@ class _Flights:
         def fly(rows: Sequence[int]) -> List[Union[FlightRecord, Outcome]]:
             found = None
             if len(rows) > 1:
-                found = fly_group([flights[i] for i in rows], options.time_limit)
+                group = [flights[i] for i in rows]
+                found = fly_group(group, options.time_limit, criteria.needs_flat_states)
             records: List[Any] = found or [_contain(fly_one, i) for i in rows]
             return records if apart else list(map(finish, rows, records))
 
         def fly_one(i: int) -> FlightRecord:
-            return fly_alone(flights[i], options.time_limit, i in drawn)
+            flat = criteria.needs_flat_states
+            return fly_alone(flights[i], options.time_limit, i in drawn, needs_flat_states=flat)
 
         def finish(i: int, found: Union[FlightRecord, Outcome]) -> Outcome:
             if isinstance(found, Outcome):
                 return found
-            outcome: Outcome = _contain(lambda one: measure_record(one, i in drawn, watch), found)
+
+            def measure(flight: FlightRecord) -> Outcome:
+                with time_limit(options.time_limit):
+                    return measure_record(flight, criteria, i in drawn, watch)
+
+            outcome: Outcome = _contain(measure, found)
             return outcome
 
         def take(task: int, found: Union[List[Any], QuadcoreError]) -> None:

@@ -20,7 +20,6 @@ from ..table import (
     make_json,
     save_files,
 )
-from ..tracking_metrics import MEANINGS, UNITS
 from .animations import make_animations, write_drawn_flights
 from .best_controllers import describe_seeds
 from .evaluate import Evaluation
@@ -70,7 +69,7 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
         "table.csv": make_csv(_table_rows(evaluation.table)),
         "evaluation.json": make_json(content),
         "timing.csv": make_csv(_timing_rows(evaluation, plan)),
-        "comparison.csv": make_csv(make_rows(evaluation.groups)),
+        "comparison.csv": make_csv(make_rows(evaluation.groups, evaluation.units)),
         "comparison.tex": encode_text(make_latex(evaluation.groups)),
     }
     written = save_files(folder, tables)
@@ -178,8 +177,8 @@ def _make_content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
         "numpy": np.__version__,
         "plan": plan.describe(),
         "laws": list_controllers(plan),
-        "units": UNITS,
-        "meanings": MEANINGS,
+        "units": plan.criteria.units,
+        "meanings": plan.criteria.meanings,
         "confidence": CONFIDENCE,
         "flights": [
             {
@@ -243,14 +242,14 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
         "verdicts": describe_best(evaluation.groups),
         "overview": make_overview(evaluation.groups),
         "flight": format_settings(plan.describe()),
-        "shown": choose_columns(lines),
+        "shown": choose_columns(lines, evaluation.units),
         "lines": lines[:ROWS_OF_PAGE],
         "more": max(0, len(evaluation.groups) - ROWS_OF_PAGE),
         "notes": [*plan.notes, *list_notes(evaluation)],
         "failures": failures[:ROWS_OF_PAGE],
         "confidence": f"{100 * CONFIDENCE:g} %",
-        "meanings": MEANINGS,
-        "units": UNITS,
+        "meanings": plan.criteria.meanings,
+        "units": plan.criteria.units,
         "losses": [
             {
                 name: value if isinstance(value, str) else format_error(value)

@@ -7,7 +7,6 @@ from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from ..tracking_metrics import MEANINGS, UNITS
 from .best_controllers import CELL
-from .seed_statistics import JUDGED
 
 Groups = Sequence[Mapping[str, Any]]
 
@@ -18,7 +17,7 @@ _SPECIAL = {**{c: f"\\{c}" for c in "&%$#_{}"}, "~": r"\textasciitilde{}",
             "^": r"\textasciicircum{}", "\\": r"\textbackslash{}"}  # fmt: skip
 
 
-def make_rows(groups: Groups) -> List[List[Any]]:
+def make_rows(groups: Groups, units: Mapping[str, str] = UNITS) -> List[List[Any]]:
     """Make rows of metric, cell, and mean with interval of each controller, under a header.
 
     A controller with a failed flight has the mean of its other flights, and their number is in the
@@ -31,7 +30,7 @@ def make_rows(groups: Groups) -> List[List[Any]]:
         for column in (name, f"{name} low", f"{name} high", f"{name} failed")
     ]
     rows: List[List[Any]] = [["metric", "unit", *CELL, *header]]
-    for metric in JUDGED:
+    for metric in units:
         for cell, row in _list_cells(groups):
             values: List[Any] = []
             for name in names:
@@ -41,7 +40,7 @@ def make_rows(groups: Groups) -> List[List[Any]]:
                     continue
                 values += [group[f"{part}_{metric}"] for part in ("mean", "low", "high")]
                 values.append(_count_failures(group))
-            rows.append([metric, UNITS[metric], *cell, *values])
+            rows.append([metric, units[metric], *cell, *values])
     return rows
 
 

@@ -58,6 +58,7 @@ class Plan(Cases):
             privileged=options.privileged,
         )
         super().__init__(design, control, models, engines, options)
+        self.criteria = options.make_criteria()
         self.scenarios = [label_point(point) for point in design]
         self.lacking = trial.list_missing_effects(self.check()[0])
 

@@ -12,14 +12,12 @@ from ..tracking_metrics import UNITS
 from .best_controllers import RANKED, mark_best
 from .intervals import EQUAL, compute_cvar, compute_effect_size, compute_interval
 
-JUDGED = tuple(UNITS)
-"""Metrics with statistics over the seeds."""
-
 
 def summarise_seeds(
     groups: Sequence[Tuple[int, ...]],
     names: Sequence[Mapping[str, Any]],
     outcomes: Sequence[Outcome],
+    units: Mapping[str, str] = UNITS,
 ) -> List[Dict[str, Any]]:
     """Summarise the flights of each combination.
 
@@ -32,6 +30,8 @@ def summarise_seeds(
         Names of each flight.
     outcomes
         Outcome of each flight.
+    units
+        Metrics with their units.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def summarise_seeds(
     rows = [
         {
             **{name: value for name, value in named[group].items() if name != "seed"},
-            **_summarise(some, firsts[group[1:]]),
+            **_summarise(some, firsts[group[1:]], units),
         }
         for group, some in flights.items()
     ]
@@ -57,7 +57,9 @@ def summarise_seeds(
     return rows
 
 
-def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str, Any]:
+def _summarise(
+    flights: Sequence[Outcome], first: Sequence[Outcome], units: Mapping[str, str]
+) -> Dict[str, Any]:
     """Summarise the flights of a combination, and compare them with the first controller."""
     took_place = [flight for flight in flights if flight.was_flown]
     flew = [flight for flight in took_place if flight.flew]
@@ -70,7 +72,7 @@ def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str
         "pairs": 0 if flights is first else len(pairs),
     }
     certain = row["is_random"] is False and _is_random([f for f in first if f.flew]) is False
-    for name in JUDGED:
+    for name in units:
         values = _pick_finite([flight.measures[name] for flight in flew])
         row[f"mean_{name}"] = float(values.mean()) if len(values) else math.nan
         drawn = values[:0] if row["is_random"] is False else values
@@ -97,7 +99,7 @@ def _is_random(flights: Sequence[Outcome]) -> Optional[bool]:
         return None
     return any(
         np.ptp([flight.measures[name] for flight in flights]) >= EQUAL
-        for name in JUDGED
+        for name in UNITS
         if UNITS[name] == "m"
     )
 

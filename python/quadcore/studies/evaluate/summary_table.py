@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Sequence
 
 from ..table import format_number
+from ..tracking_metrics import UNITS
 from .best_controllers import CELL
 from .intervals import EQUAL
 
@@ -26,6 +27,8 @@ def format_rows(evaluation: Evaluation) -> List[Dict[str, str]]:
         line["flown"] += f", {group['not_flown']} not" * (group["not_flown"] > 0)
         for name in _SHOWN:
             line[name] = format_error(group[f"mean_{name}"]) + _format_interval(group, name, flown)
+        for name in [name for name in evaluation.units if name not in UNITS]:
+            line[name] = format_number(group[f"mean_{name}"]) + _format_interval(group, name, flown)
         line["cvar"] = format_error(group["cvar_final_position"])
         line["difference"] = _format_difference(group)
         line["best"] = "*" if group["is_best"] else ""
@@ -33,7 +36,9 @@ def format_rows(evaluation: Evaluation) -> List[Dict[str, str]]:
     return lines
 
 
-def choose_columns(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
+def choose_columns(
+    lines: Sequence[Mapping[str, str]], units: Mapping[str, str] = UNITS
+) -> Dict[str, str]:
     """Return the headings of the columns to show; names that all rows share are left out."""
     names = (name for name in NAMES if len({line[name] for line in lines}) > 1)
     shown = {"controller": "controller", **{name: name for name in names}, "flown": "flown"}
@@ -41,6 +46,9 @@ def choose_columns(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
     shown.update(final_position="last 10 s (m)", cvar="CVaR 10 % (m)")
     if any(line["difference"] for line in lines):
         shown["difference"] = "vs. first controller (m)"
+    for name in units:
+        if name not in UNITS:
+            shown[name] = f"{name} ({units[name]})" if units[name] else name
     return shown
 
 

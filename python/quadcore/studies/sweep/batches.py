@@ -54,7 +54,8 @@ def fly_together(specs: Sequence[RowSpec]) -> Optional[List[Row]]:
 def _fly_guided(flights: Sequence[Flight]) -> Optional[List[Row]]:
     """Simulate rows with controllers on one batch, if they can share it."""
     plans = [partial(getattr, spec, "plan") for spec in flights]
-    outcomes = measured_flight.fly_together(plans, flights[0].limit)
+    first = flights[0]
+    outcomes = measured_flight.fly_together(plans, first.limit, first.criteria)
     if outcomes is None:
         return None
     return [

@@ -11,9 +11,9 @@ from ...control import references
 from ...control.built_in import BuiltInController
 from ...simulation.commands import CommandsLike
 from ...support.values import check_whole
-from .. import tracking_metrics as of_guided
 from ..cases import Cases, check_models, make_scenario_axis
 from ..control_setup import ControlSetup, add_labels, names_user_code
+from ..criteria import DEFAULT
 from ..design import LARGEST, Design
 from ..grouped_flights import ENGINES, MOST
 from ..options import SweepOptions
@@ -59,9 +59,16 @@ class Plan(Cases):
         control = _make_control_setup(controllers, references_, commands, options)
         check_models(models, design)
         super().__init__(design, control, models, engines, options, largest=LARGEST)
-        measured = of_guided if control.is_closed_loop else motion_metrics
-        self.units, self.meanings = measured.UNITS, measured.MEANINGS
-        self.measures = list(measured.UNITS)
+        self._criteria = options.make_criteria()
+        self.units, self.meanings = self._criteria.units, self._criteria.meanings
+        if not control.is_closed_loop:
+            if self._criteria != DEFAULT:
+                raise InputError(
+                    "failure-distance, constraint and metric require a controller. "
+                    "Add --controller."
+                )
+            self.units, self.meanings = motion_metrics.UNITS, motion_metrics.MEANINGS
+        self.measures = list(self.units)
         self.names = list(self.list_cells(0))
         """Names of the first columns, the conditions."""
         self._commands = str(commands) if isinstance(commands, (str, Path)) else None
@@ -99,7 +106,8 @@ class Plan(Cases):
                 own = UserController.of(thing, values, bool(self.control.privileged))
             else:
                 plan = replace(plan, controller=self.make_controller(case))
-        return Flight(row, self.list_cells(row), plan, own, self.options.time_limit)
+        cells, limit = self.list_cells(row), self.options.time_limit
+        return Flight(row, cells, plan, own, limit, self._criteria)
 
     def describe(self) -> Dict[str, Any]:
         """Return all settings as plain values."""

@@ -6,6 +6,7 @@ import hashlib
 import importlib.util
 import sys
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Callable, Mapping, NamedTuple, Optional, Protocol, Tuple, Union
 
@@ -18,6 +19,7 @@ from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support.user_code import describe_error, split_name
 from ...support.warning import suppress_warnings
+from ..criteria import DEFAULT, Criteria
 from ..grouped_flights import FlightRecord
 from ..measured_flight import fly_alone, fly_and_measure, measure_record
 from ..time_limit import time_limit
@@ -67,6 +69,7 @@ class Flight:
     own: Optional[UserController]
     limit: float
     """Wall-clock limit, s."""
+    criteria: Criteria = DEFAULT
 
     def fingerprint(self) -> str:
         """Return a digest of all inputs; "" if they cannot be digested."""
@@ -74,7 +77,19 @@ class Flight:
             known = self.plan.fingerprint()
         except InputError:  # a user-defined controller or reference object
             return ""
-        return known if self.own is None else compute_digest(f"{known} {self.own}".encode())
+        if self.own is not None:
+            known = compute_digest(f"{known} {self.own}".encode())
+        return known and self._add_criteria(known)
+
+    def _add_criteria(self, known: str) -> str:
+        """Add the criteria to a digest; "" if a metric is a function, which has none."""
+        if self.criteria == DEFAULT:
+            return known
+        names = [metric for metric in self.criteria.metrics if isinstance(metric, str)]
+        if len(names) < len(self.criteria.metrics):
+            return ""
+        sources = [compute_digest(read_source(split_name(name).place)) for name in names]
+        return compute_digest(f"{known} {self.criteria} {sources}".encode())
 
     def measure(self) -> Measures:
         """Simulate the flight and return its metrics.
@@ -87,11 +102,14 @@ class Flight:
         if self.own is None and self.plan.controller is None:
             with time_limit(self.limit), suppress_warnings():
                 return motion_metrics.measure(self.plan.fly())
-        return get_measures(self.fly())
+        return get_measures(self.fly(), self.criteria, self.limit)
 
     def fly(self) -> FlightRecord:
         """Simulate the flight of a controller; raises `QuadcoreError` if it cannot start."""
-        return fly_alone(self._plan_with_controller, self.limit, timed=False)
+        flat = self.criteria.needs_flat_states
+        return fly_alone(
+            self._plan_with_controller, self.limit, timed=False, needs_flat_states=flat
+        )
 
     def watch(self) -> Log:
         """Simulate the flight again and return a decimated log, also of a failed flight.
@@ -141,7 +159,7 @@ class Row(NamedTuple):
 class FlownRow(NamedTuple):
     """Row of a user-defined controller, which another process than the controller's measures."""
 
-    row: int
+    spec: Flight
     flight: FlightRecord
     fingerprint: str
 
@@ -157,20 +175,22 @@ def fly_user_code(spec: RowSpec) -> Union[FlownRow, Row]:
         return fly_row(spec)
     flown = []
     failed = _contain(spec.row, spec.fingerprint(), lambda: flown.append(spec.fly()))
-    return FlownRow(spec.row, flown[0], failed.fingerprint) if flown else failed
+    return FlownRow(spec, flown[0], failed.fingerprint) if flown else failed
 
 
 def measure_row(found: Union[FlownRow, Row]) -> Row:
     """Compute the metrics of a row, unless they are known."""
     if isinstance(found, Row):
         return found
-    flight = found.flight
-    return _contain(found.row, found.fingerprint, lambda: get_measures(flight))
+    spec, flight, fingerprint = found
+    measure = partial(get_measures, flight, spec.criteria, spec.limit)
+    return _contain(spec.row, fingerprint, measure)
 
 
-def get_measures(flight: FlightRecord) -> Measures:
-    """Return the metrics of a flight; raises `FlightError` if it failed."""
-    outcome = measure_record(flight)
+def get_measures(flight: FlightRecord, criteria: Criteria, limit: float) -> Measures:
+    """Return the metrics of a flight within a time limit; raises `FlightError` if it failed."""
+    with time_limit(limit):
+        outcome = measure_record(flight, criteria)
     if outcome.failure:
         raise FlightError(outcome.failure)
     return outcome.measures

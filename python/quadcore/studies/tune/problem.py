@@ -27,7 +27,7 @@ from ..design import Design
 from ..executor import call_apart
 from ..options import ControlOptions
 from ..time_limit import time_limit
-from ..tracking_metrics import FAILURE_DISTANCE, compute_errors, describe_failure, find_failure_time
+from ..tracking_metrics import compute_errors, describe_failure, find_failure_time
 from ..variation import pick_controller_values
 
 _GAIN = re.compile(r"(k[pidrw]|[qr])_\w+")
@@ -66,7 +66,7 @@ class TrialResult(NamedTuple):
     """Result of gains in a trial."""
 
     error: float
-    """RMS tracking error, m; after a failure, the error is `FAILURE_DISTANCE`."""
+    """RMS tracking error, m; after a failure, the error is the failure distance."""
     failure: str
     """Reason of a failure; "" for success."""
 
@@ -180,16 +180,15 @@ class Problem:
     def judge(self, trial: Trial, flown: Flown) -> TrialResult:
         """Compute the result of a trial, which needs no code of the controller."""
         log, failure = flown
-        away = np.minimum(
-            np.nan_to_num(compute_errors(log), nan=FAILURE_DISTANCE), FAILURE_DISTANCE
-        )
-        late = find_failure_time(log)
+        worst = self.options.failure_distance
+        away = np.minimum(np.nan_to_num(compute_errors(log), nan=worst), worst)
+        late = find_failure_time(log, worst)
         if late is not None:
-            failure = describe_failure(log)
-            away[log.time >= late] = FAILURE_DISTANCE
+            failure = describe_failure(log, worst)
+            away[log.time >= late] = worst
         # The missing part of a failed flight counts as failed.
         rest = max(0.0, 1 - (log.time[-1] - log.time[0]) / trial.plan.duration) if failure else 0.0
-        square = (1 - rest) * np.mean(away**2) + rest * FAILURE_DISTANCE**2
+        square = (1 - rest) * np.mean(away**2) + rest * worst**2
         return TrialResult(float(np.sqrt(square)), failure)
 
     def simulate_return(self, trial: Trial, gains: Mapping[str, float]) -> List[Flown]:

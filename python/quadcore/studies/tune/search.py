@@ -14,7 +14,6 @@ from ...support.warning import suppress_warnings
 from ..executor import run_contained
 from ..options import Progress
 from ..time_limit import time_limit
-from ..tracking_metrics import FAILURE_DISTANCE
 from .problem import Flown, Problem, Trial, TrialResult
 
 OBJECTIVE = (
@@ -198,7 +197,7 @@ class Search:
         def take(index: int, outcome: Union[Flown, QuadcoreError]) -> None:
             if isinstance(outcome, QuadcoreError):
                 # Gains that the controller rejects count as the worst.
-                outcomes[index] = TrialResult(FAILURE_DISTANCE, str(outcome))
+                outcomes[index] = TrialResult(problem.options.failure_distance, str(outcome))
             else:
                 outcomes[index] = problem.judge(flights[index][0], outcome)
 
