@@ -38,7 +38,15 @@ class ReferenceSamples(SimpleNamespace):
 
     @classmethod
     def repeat(cls, wanted: Any, n: int) -> ReferenceSamples:
-        """Return the same reference for n vehicles, with the members that it has."""
+        """Return the same reference for several vehicles, with the members that it has.
+
+        Parameters
+        ----------
+        wanted : Reference
+            Reference at one time, or an object with the same members.
+        n : int
+            Number of vehicles.
+        """
         found = {name: getattr(wanted, name) for name in _LENGTHS if hasattr(wanted, name)}
         arrays = {name: np.asarray(value, dtype=float) for name, value in found.items()}
         return cls(**{name: np.broadcast_to(x, (n, *x.shape)) for name, x in arrays.items()})
