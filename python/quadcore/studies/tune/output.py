@@ -21,7 +21,7 @@ from ..flight_folder import (
 )
 from ..table import format_number, format_settings, save_files
 from ..time_limit import time_limit
-from .problem import Problem, Trial, TrialResult
+from .problem import Flown, Problem, Trial
 from .search import Tuning
 
 GAINS = "gains.yaml"
@@ -122,13 +122,16 @@ def _measure(problem: Problem, gains: Mapping[str, float]) -> Dict[str, str]:
     trials = problem.held_out
     errors: Dict[str, str] = {}
 
-    def fly(trial: Trial) -> TrialResult:
+    def fly(trial: Trial) -> Flown:
         with suppress_warnings(), time_limit(problem.options.time_limit):
-            return problem.fly(trial, gains)
+            return problem.simulate(trial, gains)
 
-    def take(index: int, found: Union[TrialResult, QuadcoreError]) -> None:
-        failed = isinstance(found, QuadcoreError) or bool(found.failure)
-        errors[trials[index].label] = "failed" if failed else format_number(found.error)  # type: ignore
+    def take(index: int, found: Union[Flown, QuadcoreError]) -> None:
+        text = "failed"
+        if not isinstance(found, QuadcoreError):
+            judged = problem.judge(trials[index], found)
+            text = text if judged.failure else format_number(judged.error)
+        errors[trials[index].label] = text
 
     run_contained(fly, trials, take, problem.options.processes, apart=problem.runs_user_code)
     return errors
