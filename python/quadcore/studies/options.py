@@ -235,7 +235,7 @@ class ControlKeywords(Keywords, total=False):
 
 
 @dataclass(frozen=True)
-class MeasureOptions(ControlOptions):
+class CriteriaOptions(ControlOptions):
     """Options of studies that measure flights."""
 
     constraints: Optional[Mapping[str, Any]] = field(default=None, metadata=_describe(
@@ -257,15 +257,15 @@ class MeasureOptions(ControlOptions):
         return Criteria.make(self.failure_distance, self.constraints, self.metrics)
 
 
-class MeasureKeywords(ControlKeywords, total=False):
-    """`MeasureOptions` as keyword arguments, for type checkers."""
+class CriteriaKeywords(ControlKeywords, total=False):
+    """`CriteriaOptions` as keyword arguments, for type checkers."""
 
     constraints: Optional[Mapping[str, Any]]
     metrics: Sequence[Metric]
 
 
 @dataclass(frozen=True)
-class EvaluateOptions(MeasureOptions):
+class EvaluateOptions(CriteriaOptions):
     """Options of `evaluate`."""
 
     duration: float = field(default=30.0, metadata=change_option("duration"))
@@ -299,7 +299,7 @@ class CompareOptions(Options):
 
 
 @dataclass(frozen=True)
-class SweepOptions(MeasureOptions):
+class SweepOptions(CriteriaOptions):
     """Options of `sweep`."""
 
     spawn: Optional[Sequence[Number]] = field(

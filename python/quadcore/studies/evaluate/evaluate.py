@@ -34,8 +34,8 @@ from ..executor import contain_errors, count_cores, run_contained
 from ..grouped_flights import MOST_VECTORIZED, FlightRecord, fly_group, share_out, split
 from ..measured_flight import Outcome, fly_alone, measure_record
 from ..options import (
+    CriteriaKeywords,
     EvaluateOptions,
-    MeasureKeywords,
     Names,
     Progress,
     accept_options,
@@ -121,7 +121,7 @@ def evaluate(
     engine: Optional[AnyEngineName] = None,
     vary: Optional[Mapping[str, Values]] = None,
     margins: bool = False,
-    **options: Unpack[MeasureKeywords],
+    **options: Unpack[CriteriaKeywords],
 ) -> Evaluation:
     """Measure the tracking error of controllers along references.
 

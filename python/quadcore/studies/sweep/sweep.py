@@ -25,7 +25,14 @@ from ...simulation.commands import CommandsLike
 from ...simulation.engines import STUDY_ENGINE, AnyEngineName
 from ...support import arguments, interrupts
 from ..control_setup import Controllers, References
-from ..options import MeasureKeywords, Names, Progress, SweepOptions, accept_options, choose_engines
+from ..options import (
+    CriteriaKeywords,
+    Names,
+    Progress,
+    SweepOptions,
+    accept_options,
+    choose_engines,
+)
 from ..output_folder import output_folder
 from ..table import count_outcomes
 from .dask import connect_cluster
@@ -99,7 +106,7 @@ def sweep(
     resume: bool = False,
     executor: Optional[concurrent.futures.Executor] = None,
     dask: Optional[str] = None,
-    **options: Unpack[MeasureKeywords],
+    **options: Unpack[CriteriaKeywords],
 ) -> Sweep:
     """Simulate many flights over a grid or a random sample of parameters.
 
