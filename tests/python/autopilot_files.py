@@ -19,7 +19,7 @@ def write_stack(folder, *faults, more="", ports=PORTS, name="stack.yaml"):
         "autopilot: betaflight\n"
         f"program: {sys.executable}\n"
         f"arguments: [{STAND_IN}, --ports, {ports}{fault}]\n"
-        f"hold: 1.6\n{more}"
+        f"lockstep: plain\nhold: 1.6\n{more}"
     )
     return path
 

@@ -174,8 +174,8 @@ def test_a_slow_autopilot_is_waited_for_with_a_warning(tmp_path):
 
 def test_parameters_are_written_and_read_back(tmp_path):
     for given, reason in (
-        ("{bogus: 3}", r"stack.yaml:5: Betaflight refused a line: .*INVALID NAME: bogus = 3"),
-        ("{stubborn: 3}", "stack.yaml:5: Betaflight has stubborn = 180 after it was set to 3"),
+        ("{bogus: 3}", r"stack.yaml:6: Betaflight refused a line: .*INVALID NAME: bogus = 3"),
+        ("{stubborn: 3}", "stack.yaml:6: Betaflight has stubborn = 180 after it was set to 3"),
     ):
         with pytest.raises(qc.InputError, match=reason):
             fly(write_stack(tmp_path, more=f"parameters: {given}\n"), 0.1)
@@ -208,7 +208,7 @@ def test_an_evaluation_is_bit_identical(tmp_path):
     for name in ("first", "second"):
         done = run_command(
             *["evaluate", "--model", "iris", "--controller", f"geometric,{stack}"],
-            *["--reference", "hover", "--duration", "0.4", "--dt", "0.001", "--seeds", "2"],
+            *["--reference", "hover", "--duration", "0.2", "--dt", "0.001", "--seeds", "2"],
             *["--out", str(tmp_path / name), "--no-plots", "--quiet"],
         )
         assert done.returncode == 0, done.stderr

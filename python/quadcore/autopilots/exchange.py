@@ -15,8 +15,10 @@ from .program import Program
 
 HOST = "127.0.0.1"
 
+PATIENCE = 2.0
+"""Time without an answer after which a warning says that quadcore waits, s."""
+
 _AGAIN = 0.25  # s; without an answer for so long, the question is asked again
-_PATIENCE = 2.0  # s; after that a warning tells that quadcore waits
 _SETTLE = 0.02  # s; answers to a repeated question that come later are discarded
 
 
@@ -62,8 +64,8 @@ class Exchange:
         """Port to which the program sends its answers."""
         return int(self._socket.getsockname()[1])
 
-    def send(self, packet: bytes, port: int) -> None:
-        """Send a packet that is not answered."""
+    def send(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> None:
+        """Send a packet that is not answered; arguments as for `ask`."""
         self._socket.sendto(packet, (HOST, port))
 
     def ask(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> bytes:
@@ -86,9 +88,9 @@ class Exchange:
             if self._program.has_ended():
                 raise fail(self._program.describe_end())
             now = time.perf_counter()
-            if now - began > _PATIENCE and not has_warned:
+            if now - began > PATIENCE and not has_warned:
                 warn(
-                    f"The autopilot has not answered for {_PATIENCE:g} s. quadcore waits for it. "
+                    f"The autopilot has not answered for {PATIENCE:g} s. quadcore waits for it. "
                     f"{self._program.describe_messages()}"
                 )
                 has_warned = True

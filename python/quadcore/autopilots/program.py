@@ -52,7 +52,7 @@ class Program:
             start_new_session=True,
         )
 
-    def run(self, command: Sequence[str]) -> str:
+    def run(self, command: Sequence[str], environment: Mapping[str, str]) -> str:
         """Run a command in the folder to its end, and return its output.
 
         Raises
@@ -60,7 +60,7 @@ class Program:
         InputError
             If the command cannot be run or fails.
         """
-        process = self._launch(command, {}, subprocess.PIPE)
+        process = self._launch(command, environment, subprocess.PIPE)
         try:
             output = str(process.communicate(timeout=_LONGEST)[0], errors="replace")
         except subprocess.TimeoutExpired:
@@ -76,7 +76,12 @@ class Program:
             )
         return output
 
-    def start(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
+    def start(
+        self,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        passed: Sequence[int] = (),
+    ) -> None:
         """Start the program.
 
         Parameters
@@ -85,6 +90,8 @@ class Program:
             Program and arguments.
         environment
             Variables to add to the environment.
+        passed
+            File descriptors to pass on.
 
         Raises
         ------
@@ -95,7 +102,7 @@ class Program:
         self._terminal, output = os.openpty()
         os.set_blocking(self._terminal, False)
         try:
-            self._launch(command, environment, output)
+            self._launch(command, environment, output, passed)
         finally:
             os.close(output)
 
@@ -144,7 +151,11 @@ class Program:
             self._terminal = -1
 
     def _launch(
-        self, command: Sequence[str], environment: Mapping[str, str], output: int
+        self,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        output: int,
+        passed: Sequence[int] = (),
     ) -> subprocess.Popen:
         assert self._watch.stdin is not None
         with interrupts.hold_signals():
@@ -157,6 +168,7 @@ class Program:
                     stdout=output,
                     stderr=subprocess.STDOUT,
                     start_new_session=True,
+                    pass_fds=passed,
                 )
             except OSError as error:
                 raise InputError(

@@ -10,7 +10,7 @@ from ..control.vehicle import Vehicle
 from ..support.rotation import to_matrix, to_roll_pitch_yaw
 from .motor_curve import MotorCurve
 
-_POSITION, _VELOCITY, _INTEGRAL, _HEADING = 2.0, 2.4, 0.3, 2.0  # 1/s^2, 1/s, 1/s, 1/s
+_POSITION, _VELOCITY, _INTEGRAL, _HEADING = 2.0, 2.4, 0.5, 2.0  # 1/s^2, 1/s, 1/s, 1/s
 _MOST = 3.0  # m/s^2; limit of the integral
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import socket
-from typing import Any, Callable, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Mapping, Optional, Sequence
 
 import numpy as np
 
-from ..._core import InputError
+from ..._core import FlightError, InputError
 from ...control.vehicle import Vehicle
 from ..autopilot import Autopilot
 from ..exchange import Exchange, check_free, find_free_port
@@ -16,11 +16,13 @@ from ..program import Program
 from ..readings import Readings
 from ..rotor_map import Place
 from ..sticks import StickPilot, Sticks
+from ..strict import StrictExchange, describe_preload
 from . import frames
-from .packets import Ports, pack_radio, pack_state, read_motors
+from .packets import RAW_PORT, Ports, pack_radio, pack_state, read_motors
 from .parameters import COMMANDS, DEFAULTS, IDLE, MAX_ANGLE, MAX_YAW_RATE, write_parameters
 
 _ARM, _SPIN_UP = 1.5, 0.3  # s before the flight
+_STILL = (0.0, 0.0, 0.0, 0.0)
 _DISARMED = 0.1  # s without output after which an armed autopilot counts as disarmed
 
 OwnPilot = Callable[[float, Any, Any], Sticks]
@@ -35,8 +37,8 @@ class Betaflight(Autopilot):
         Betaflight's program.
     arguments : sequence of str, default ()
         Arguments of the program. ``{motors}``, ``{state}``, ``{radio}`` and ``{msp}`` stand for
-        free ports. Without them, Betaflight's fixed ports are used, so that one flight runs at a
-        time.
+        free ports in the plain lockstep. Without them, Betaflight's fixed ports are used there, so
+        that one flight runs at a time.
     parameters : mapping of str to str, default {}
         Parameters of Betaflight by name, which are set before the flight and read back.
     commands : sequence of str, default ()
@@ -46,6 +48,10 @@ class Betaflight(Autopilot):
         the reference in the level mode.
     hold : float, default 8
         Duration of the phase before the flight, s. Betaflight arms 1.5 s before its end.
+    lockstep : {"strict", "plain"}, default "strict"
+        "strict" preloads a library that controls the clock of the program: flights are
+        bit-identical and several may run at once. "plain" exchanges packets with a program whose
+        clock runs on.
     motor_curve, rotors, imu
         As for `Autopilot`.
     where : mapping of str to str, default {}
@@ -63,6 +69,7 @@ class Betaflight(Autopilot):
         commands: Sequence[str] = (),
         pilot: Optional[OwnPilot] = None,
         hold: float = 8.0,
+        lockstep: str = "strict",
         where: Optional[Mapping[str, str]] = None,
         **others: Any,
     ) -> None:
@@ -76,6 +83,11 @@ class Betaflight(Autopilot):
         self._exchange: Optional[Exchange] = None
         self._pilot: Optional[StickPilot] = None
         self.summary = ""
+        self._is_strict = lockstep == "strict"
+        if lockstep not in ("strict", "plain"):
+            raise InputError(
+                f"{self._where.get('lockstep', '')}lockstep is {lockstep}. Use strict or plain."
+            )
         if hold < _ARM:
             raise InputError(
                 f"{self._where.get('hold', '')}hold is {hold:g}, but Betaflight arms {_ARM:g} s "
@@ -94,12 +106,7 @@ class Betaflight(Autopilot):
             IDLE,
         )
         self._program = Program()
-        ports, command = self._choose_ports()
-        self._exchange = Exchange(self._program, ports.motors)
-        self.ports = ports._replace(motors=self._exchange.port)
-        command = [part.replace("{motors}", str(self.ports.motors)) for part in command]
-        write_parameters(self._program, command, self._parameters, self._lines, self._where)
-        self._program.start(command, {})
+        (self._start_strict if self._is_strict else self._start_plain)(self._program)
         self._first: Optional[np.ndarray] = None
         self._sticks: Optional[Sticks] = None
         self._off_since: Optional[float] = None
@@ -110,18 +117,20 @@ class Betaflight(Autopilot):
         if self._first is None:
             self._first = readings.position
         time = readings.time + self.hold
+
+        def fail(reason: str) -> FlightError:
+            return self.fail(readings.time, reason)
+
         if sticks is not self._sticks:
             self._sticks = sticks
-            self._exchange.send(pack_radio(time, sticks), self.ports.radio)
+            self._exchange.send(pack_radio(time, sticks), self.ports.radio, fail)
         fields = frames.convert_readings(readings, self._first, frames.Place())
-        answer = self._exchange.ask(
-            pack_state(time, fields),
-            self.ports.state,
-            lambda reason: self.fail(readings.time, reason),
-        )
+        answer = self._exchange.ask(pack_state(time, fields), self.ports.state, fail)
+        if not answer and self._is_strict and readings.time < 0:  # it is still starting
+            return _STILL
         outputs, problem = read_motors(answer)
         if outputs is None:
-            raise self.fail(readings.time, problem)
+            raise fail(problem)
         self._check_armed(readings.time, outputs)
         return [max(0.0, min(1.0, output)) for output in outputs]
 
@@ -150,21 +159,36 @@ class Betaflight(Autopilot):
             self._program.stop()
             self._program = None
 
-    def _choose_ports(self) -> Tuple[Ports, List[str]]:
-        """Return the ports, and the command with those of the autopilot."""
+    def _start_strict(self, program: Program) -> None:
+        """Start the program with a clock that quadcore controls, and with ports of its own."""
+        self._exchange = exchange = StrictExchange(program, self.period)
+        self.ports = _find_free_ports()._replace(motors=exchange.port)
+        replaced = {**dict(zip(Ports(), self.ports)), RAW_PORT: 0}
+        self._write_parameters(self._command, describe_preload(replaced))
+        program.start(self._command, *exchange.describe_environment(replaced))
+        exchange.begin(lambda reason: self.fail(-self.hold, reason))
+
+    def _start_plain(self, program: Program) -> None:
         text = " ".join(self._command)
-        if not any(f"{{{name}}}" in text for name in Ports._fields):
-            ports = Ports()
-            for port in (ports.state, ports.radio):
+        if any(f"{{{name}}}" in text for name in Ports._fields):
+            self._exchange = Exchange(program, 0)
+            self.ports = _find_free_ports()._replace(motors=self._exchange.port)
+        else:
+            self.ports = Ports()
+            self._exchange = Exchange(program, self.ports.motors)
+            for port in (self.ports.state, self.ports.radio):
                 check_free(socket.SOCK_DGRAM, port)
-            check_free(socket.SOCK_STREAM, ports.msp)
-            return ports, self._command
-        udp, tcp = socket.SOCK_DGRAM, socket.SOCK_STREAM
-        ports = Ports(0, find_free_port(udp), find_free_port(udp), find_free_port(tcp))
+            check_free(socket.SOCK_STREAM, self.ports.msp)
         command = list(self._command)
-        for name in ("state", "radio", "msp"):
-            command = [part.replace(f"{{{name}}}", str(getattr(ports, name))) for part in command]
-        return ports, command
+        for name, port in self.ports._asdict().items():
+            command = [part.replace(f"{{{name}}}", str(port)) for part in command]
+        self._write_parameters(command, {})
+        program.start(command, {})
+
+    def _write_parameters(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
+        assert self._program is not None
+        given = self._parameters, self._lines, self._where
+        write_parameters(self._program, command, environment, *given)
 
     def _check_armed(self, t: float, outputs: Sequence[float]) -> None:
         """Raise `FlightError` if the autopilot is not armed in flight."""
@@ -180,3 +204,8 @@ class Betaflight(Autopilot):
             raise self.fail(
                 self._off_since, f"the autopilot disarmed. {self._program.describe_messages()}"
             )
+
+
+def _find_free_ports() -> Ports:
+    udp, tcp = socket.SOCK_DGRAM, socket.SOCK_STREAM
+    return Ports(0, find_free_port(udp), find_free_port(udp), find_free_port(tcp))

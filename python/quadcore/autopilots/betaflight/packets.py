@@ -12,6 +12,9 @@ _STATE = struct.Struct("<18d")  # fdm_packet
 _RADIO = struct.Struct("<d16H")  # rc_packet
 _MOTORS = struct.Struct("<4f")  # servo_packet
 
+RAW_PORT = 9001
+"""UDP: the autopilot sends pulse widths here, which quadcore does not use."""
+
 _CENTRE, _HALF = 1500, 500  # us
 
 

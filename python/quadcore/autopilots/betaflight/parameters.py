@@ -41,6 +41,7 @@ _CONFIG = "quadcore.txt"
 def write_parameters(
     program: Program,
     command: Sequence[str],
+    environment: Mapping[str, str],
     parameters: Mapping[str, str],
     commands: Sequence[str],
     where: Mapping[str, str],
@@ -53,6 +54,8 @@ def write_parameters(
         Program, not yet started.
     command
         Program and arguments.
+    environment
+        Variables to add to the environment.
     parameters
         Values by name.
     commands
@@ -69,7 +72,7 @@ def write_parameters(
     lines = [f"set {name} = {value}" for name, value in parameters.items()]
     lines += [*commands, *(f"get {name}" for name in parameters), "save"]
     (program.folder / _CONFIG).write_text("\n".join(lines) + "\n")
-    output = program.run([*command, "--config", _CONFIG])
+    output = program.run([*command, "--config", _CONFIG], environment)
     refused = re.search(r"###ERROR[^#]*###", output)
     if refused:
         raise InputError(

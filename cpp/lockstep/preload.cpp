@@ -1,0 +1,166 @@
+// A library to preload (LD_PRELOAD) into an autopilot: strict lockstep without changes of its
+// source.
+//
+// The program must have one main loop that reads the clock, and threads that receive datagrams
+// after select(). The clock of the main thread advances by 1 us per reading and by the duration of
+// each sleep. At a horizon, the main thread waits for the simulator to move the horizon. Other
+// threads only read the clock. Therefore all that the program computes depends on the received
+// packets alone.
+//
+// The simulator holds the other end of the socket QUADCORE_LOCKSTEP (a file descriptor). It writes
+// horizons as 64-bit nanoseconds. It reads 's' when the main thread stands at the horizon, and 'h'
+// when a thread has handled a packet, that is, returns to select(). QUADCORE_PORTS
+// ("9002:41000,...") replaces ports; packets to port 0 are discarded.
+
+#include <dlfcn.h>
+#include <netinet/in.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/select.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+constexpr std::int64_t kReading = 1000;        // ns; duration of a reading of the clock
+constexpr std::int64_t kSecond = 1000000000;   // ns
+constexpr std::int64_t kStart = 10 * kSecond;  // time at which the program starts
+constexpr int kMostPorts = 16;
+
+std::atomic<std::int64_t> clock_now{kStart};
+std::int64_t horizon = kStart;
+int simulator = -1;
+int replaced_ports[kMostPorts][2];
+int port_count = 0;
+std::atomic<int> started_threads{0}, selecting_threads{0};
+thread_local bool is_main = false, has_received = false, has_selected = false;
+
+template <class Function>
+Function* find_next(Function*, const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+bool is_in_lockstep() { return simulator >= 0; }
+
+/// Tells the simulator an event; without a simulator, the program ends.
+void tell(char event) {
+  if (send(simulator, &event, 1, MSG_NOSIGNAL) != 1) _exit(0);
+}
+
+/// Advances the clock of the main thread, which waits at the horizon.
+void advance(std::int64_t duration) {
+  clock_now += duration;
+  while (clock_now > horizon) {
+    tell('s');
+    if (recv(simulator, &horizon, sizeof horizon, 0) != sizeof horizon) _exit(0);
+  }
+}
+
+int find_port(int port) {
+  for (int i = 0; i < port_count; ++i) {
+    if (replaced_ports[i][0] == port) return replaced_ports[i][1];
+  }
+  return port;
+}
+
+/// Returns an address with its port replaced.
+sockaddr_in replace_port(const sockaddr* address) {
+  sockaddr_in replaced;
+  std::memcpy(&replaced, address, sizeof replaced);
+  replaced.sin_port = htons(static_cast<std::uint16_t>(find_port(ntohs(replaced.sin_port))));
+  return replaced;
+}
+
+bool has_port(const sockaddr* address, socklen_t length) {
+  return address != nullptr && address->sa_family == AF_INET && length >= sizeof(sockaddr_in);
+}
+
+__attribute__((constructor)) void begin() {
+  is_main = true;
+  if (const char* text = std::getenv("QUADCORE_LOCKSTEP")) simulator = std::atoi(text);
+  const char* rest = std::getenv("QUADCORE_PORTS");
+  while (rest != nullptr && *rest != '\0' && port_count < kMostPorts) {
+    char* end = nullptr;
+    replaced_ports[port_count][0] = static_cast<int>(std::strtol(rest, &end, 10));
+    if (*end != ':') break;
+    replaced_ports[port_count++][1] = static_cast<int>(std::strtol(end + 1, &end, 10));
+    rest = *end == ',' ? end + 1 : end;
+  }
+  unsetenv("LD_PRELOAD");  // programs that this one starts run as usual
+}
+
+}  // namespace
+
+#define QUADCORE_EXPORT extern "C" __attribute__((visibility("default")))
+
+QUADCORE_EXPORT int clock_gettime(clockid_t id, timespec* time) noexcept {
+  static auto* const next = find_next(&clock_gettime, "clock_gettime");
+  if (!is_in_lockstep()) return next(id, time);
+  if (is_main) advance(kReading);
+  const std::int64_t now = clock_now;
+  time->tv_sec = now / kSecond;
+  time->tv_nsec = now % kSecond;
+  return 0;
+}
+
+QUADCORE_EXPORT int nanosleep(const timespec* duration, timespec* rest) {
+  static auto* const next = find_next(&nanosleep, "nanosleep");
+  if (!is_in_lockstep() || !is_main) return next(duration, rest);
+  advance(duration->tv_sec * kSecond + duration->tv_nsec);
+  if (rest != nullptr) *rest = timespec{};
+  return 0;
+}
+
+QUADCORE_EXPORT int select(int count, fd_set* read, fd_set* write, fd_set* except, timeval* limit) {
+  static auto* const next = find_next(&select, "select");
+  if (is_in_lockstep() && !is_main) {
+    if (has_received) tell('h');
+    if (!has_selected) ++selecting_threads;
+    has_received = false;
+    has_selected = true;
+  }
+  return next(count, read, write, except, limit);
+}
+
+QUADCORE_EXPORT ssize_t recvfrom(int socket, void* data, size_t size, int flags, sockaddr* from,
+                                 socklen_t* length) {
+  static auto* const next = find_next(&recvfrom, "recvfrom");
+  const ssize_t received = next(socket, data, size, flags, from, length);
+  has_received = has_received || received >= 0;
+  return received;
+}
+
+/// Returns once the new thread waits for packets, so that none is lost.
+QUADCORE_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
+                                   void* (*function)(void*), void* argument) noexcept {
+  static auto* const next = find_next(&pthread_create, "pthread_create");
+  const int status = next(thread, attributes, function, argument);
+  if (is_in_lockstep() && status == 0) {
+    ++started_threads;
+    while (selecting_threads < started_threads) sched_yield();
+  }
+  return status;
+}
+
+QUADCORE_EXPORT int bind(int socket, const sockaddr* address, socklen_t length) noexcept {
+  static auto* const next = find_next(&bind, "bind");
+  if (!has_port(address, length)) return next(socket, address, length);
+  const sockaddr_in replaced = replace_port(address);
+  return next(socket, reinterpret_cast<const sockaddr*>(&replaced), sizeof replaced);
+}
+
+QUADCORE_EXPORT ssize_t sendto(int socket, const void* data, size_t size, int flags,
+                               const sockaddr* address, socklen_t length) {
+  static auto* const next = find_next(&sendto, "sendto");
+  if (!has_port(address, length)) return next(socket, data, size, flags, address, length);
+  const sockaddr_in replaced = replace_port(address);
+  if (replaced.sin_port == 0) return static_cast<ssize_t>(size);
+  return next(socket, data, size, flags, reinterpret_cast<const sockaddr*>(&replaced),
+              sizeof replaced);
+}
