@@ -16,6 +16,7 @@ from test_own_controllers import here as here
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.studies.evaluate.evaluate import fly_plan
+from quadcore.studies.evaluate.overview import describe_best
 from quadcore.studies.evaluate.plan import Plan
 from quadcore.studies.options import EvaluateOptions
 
@@ -147,3 +148,21 @@ def test_an_interrupt_carries_the_evaluation():
     with pytest.raises(KeyboardInterrupt) as raised:
         fly_plan(plan, progress)
     assert raised.value.evaluation.table[0]["failure"] == ""
+
+
+@pytest.mark.parametrize(
+    "varied, values, expected",
+    [
+        ("reference", ("circle", "eight"), "On circle, a has the lowest final error."),
+        ("scenario", ("none", "gusty"), "With scenario none, a has the lowest final error."),
+    ],
+)
+def test_the_result_names_the_cell_and_its_best_controller(varied, values, expected):
+    cell = {"reference": "hover", "engine": "eigen", "model": "quadrotor", "scenario": "none"}
+    groups = [
+        {**cell, varied: value, "controller": name, "mean_rms_position": 1.0, "failure_rate": 0.0,
+         "flights": 2, "is_best": name == "a"}
+        for value in values
+        for name in "ab"
+    ]  # fmt: skip
+    assert describe_best(groups)[0] == expected

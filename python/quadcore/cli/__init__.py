@@ -64,8 +64,8 @@ _COMMANDS = (
 
 _DESCRIPTION = (
     "Multirotor simulator and controller test bench.",
-    f"By default run, compare, serve and export-fmu use the engine {ENGINE}; evaluate, sweep, tune "
-    f"and fit use {STUDY_ENGINE}; validate compares all engines.",
+    f"By default run, compare, serve and export-fmu use the engine {ENGINE}; evaluate, sweep, "
+    f"tune, fit, predict and benchmark use {STUDY_ENGINE}; validate compares all engines.",
 )
 
 _EPILOG = """\

@@ -16,7 +16,7 @@ def register(commands: Any) -> None:
     parser = add_command(
         commands,
         "completion",
-        "Print the code with which a shell completes quadcore's commands and options.",
+        "Print the shell code that completes quadcore's commands and options.",
         print_code,
         """
         quadcore completion bash >> ~/.bashrc

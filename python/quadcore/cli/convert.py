@@ -19,7 +19,7 @@ def register(commands: Any) -> None:
     parser = add_command(
         commands,
         "convert",
-        "Write a log in another format. Every bit of quadcore's own logs is kept.",
+        "Convert a log to another format; the numbers of quadcore's own logs keep every bit.",
         convert_log,
         """
         quadcore convert out/spiral/log.csv spiral.mat

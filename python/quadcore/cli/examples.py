@@ -26,7 +26,7 @@ def register(commands: Any) -> None:
         copy_examples,
         "quadcore examples quadcore_examples",
     )
-    parser.add_argument("folder", metavar="DIR", type=Path, help="folder, made if it is missing")
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder; created if it is missing")
     options.add_quiet(parser)
 
 

@@ -108,7 +108,7 @@ def register(commands: Any) -> None:
         "--shift",
         metavar="S",
         type=parse.not_negative,
-        help="maximum delay in seconds of the measurements behind the commands, which is "
+        help="maximum delay of the measurements relative to the commands in seconds; the delay is "
         "identified too (default: 0)",
     )
     names = [name for name, _ in engines()]

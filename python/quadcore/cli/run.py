@@ -60,7 +60,7 @@ def register(commands: Any) -> None:
         help="log to write, .csv, .mat or .bag; repeatable",
     )
     find_group(parser, OUTPUT).add_argument(
-        "--live", action="store_true", help="show the flight in the browser while it goes on"
+        "--live", action="store_true", help="show the flight in the browser as it runs"
     )
     find_group(parser, OUTPUT).add_argument(
         "--pace",

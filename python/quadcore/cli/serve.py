@@ -1,4 +1,4 @@
-"""``quadcore serve``: let another program drive flights."""
+"""``quadcore serve``: let another program control flights."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def register(commands: Any) -> None:
     parser = add_command(
         commands,
         "serve",
-        "Let another program drive flights over a local socket, in lockstep.",
+        "Let another program control flights over a local socket, in lockstep.",
         serve_clients,
         "quadcore serve quadrotor --port 5555 --log flight.csv",
     )

@@ -39,8 +39,8 @@ class Controller(Protocol):
     rate : float, default 500
         Calls per simulated second, 1/s; at most one call per step.
     fixed_rate : bool, default False
-        Whether nothing may change `rate`: for a controller that counts its calls as time, such as
-        an autopilot in another process.
+        Whether `rate` must not change. Set it for a controller that counts its calls as time, such
+        as an autopilot in another process.
     delay : float, default 0
         Time from a call until its command reaches the motors, s, rounded up to whole steps. The
         command of the first call acts at once.

@@ -84,7 +84,7 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
 
 
 class FileReader(NamedTuple):
-    """Reader of YAML files that describe controllers other than gains files do."""
+    """Reader of a kind of YAML file that describes a controller, other than gains files."""
 
     reads: Callable[[str], bool]
     """Whether it reads a file."""

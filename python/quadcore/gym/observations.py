@@ -10,7 +10,7 @@ from .step_data import StepData
 
 
 class Observation(NamedTuple):
-    """Numbers about each vehicle."""
+    """Observation: an array of numbers for each vehicle."""
 
     meaning: str
     """With axes and units."""

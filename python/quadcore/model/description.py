@@ -164,7 +164,7 @@ def list_xacro_arguments(model: Union[str, Path], given: Mapping[str, object]) -
 
 
 def load_world(world: str | None) -> Document:
-    """Read the text of a world file or a shipped world; None is ``"empty"``.
+    """Read the text of a world file or a built-in world; None stands for ``"empty"``.
 
     Raises
     ------

@@ -68,7 +68,7 @@ class ListedFlight(NamedTuple):
     style: Optional[int]
 
     def read_vehicle(self) -> Optional[DrawnVehicle]:
-        """Read what the vehicle looks like; None if its model was removed."""
+        """Read the shapes of the vehicle; return None if its model file was removed."""
         if not is_file(self.model):
             return None
         return read_vehicle(read_model(self.model, ignore=self.ignore))

@@ -23,7 +23,7 @@ _SHIPPED = {"crazyflie": "crazyflie", "ulog": "px4", "blackbox": "betaflight"}
 
 
 def is_recording(path: Path) -> bool:
-    """Return whether a file is not one that quadcore wrote, but may be a recording."""
+    """Return whether a file may be a recording of a real flight; False for a log of quadcore."""
     if path.suffix.lower() in (".mat", ".bag") or not path.is_file():
         return False
     head = read_head(path)

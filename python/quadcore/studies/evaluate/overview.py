@@ -52,7 +52,9 @@ def describe_best(groups: Sequence[Mapping[str, Any]]) -> List[str]:
     sentences = []
     for cell, found in overview.rows[:_SENTENCES]:
         best = [name for name, (_, is_best) in zip(overview.controllers, found) if is_best]
-        where = f"On {', '.join(cell)}"
+        names = (name if name != "reference" else "" for name in overview.names)
+        where = ", ".join(f"{name} {value}".strip() for name, value in zip(names, cell))
+        where = f"On {where}" if overview.names[0] == "reference" else f"With {where}"
         if not best:
             if any(text for text, _ in found):  # otherwise no flight of the cell ran
                 sentences.append(f"{where}, no controller completed all flights.")

@@ -27,7 +27,7 @@ _SAME = 0.05
 
 
 class PreparedFlight(NamedTuple):
-    """A flight that was measured.
+    """Measured flight after cleaning and alignment.
 
     Attributes
     ----------

@@ -45,7 +45,7 @@ class Windows(NamedTuple):
 
     @property
     def channels(self) -> List[str]:
-        """Quantities that were measured."""
+        """Measured quantities."""
         return list(CHANNELS) if "position" in self.states else ["rates"]
 
     def choose(self, kept: np.ndarray) -> Windows:

@@ -16,7 +16,7 @@ from .experiment import MODEL, Case, Flight
 
 
 class Link(NamedTuple):
-    """Step of a chain."""
+    """Step of a chain of models, from one to the next."""
 
     change: str
     begin: Case

@@ -128,7 +128,7 @@ class Experiment:
         return self.plan.commands
 
     def flight(self, case: Case, more: Optional[Mapping[str, Value]] = None) -> FlightPlan:
-        """Describe the flight of a case, from rest with the rotors as first commanded.
+        """Describe the flight of a case, from rest with the rotors at their first command.
 
         Parameters
         ----------
