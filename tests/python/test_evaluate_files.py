@@ -46,7 +46,7 @@ def test_everything_is_written_and_reproducible():
         "Controller settings",
         "Poles of",
         'class="quadcore-player"',
-        "data:image/png;base64,",
+        '<figure class="plot"><svg ',
     ):
         assert text in page
     assert 'src="http' not in page

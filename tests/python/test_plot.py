@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.report import log_plots, plots
+from quadcore.report.drawing import Drawing
 from quadcore.studies.compare import plots as overlaid
 
 ONE = {f"{name}.png" for name in ("position", "attitude", "rates", "rotors", "path")}
@@ -128,7 +129,10 @@ def test_each_slow_rotor_has_a_panel_with_its_speed_times_the_slowdown():
 
 def test_flights_over_each_other_tell_commands_and_what_they_are_compared_with(monkeypatch):
     drawn = {}
-    monkeypatch.setattr(plots, "png", lambda figure: drawn.setdefault(len(drawn), figure) and b"")
+    none = Drawing("", "<svg></svg>", {})
+    monkeypatch.setattr(
+        plots, "finish", lambda figure: drawn.setdefault(len(drawn), figure) and none
+    )
     flight = ["compare", "quadrotor", "--duration", "0.01", "--commands", "c.csv", "--out", "o"]
     Path("c.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
     vary = ["--vary", "motorpid_plugin.kp=0.0005,0.001", "--against", "2", "--quiet"]

@@ -192,7 +192,7 @@ def test_the_page_tells_what_was_flown(in_empty_folder):
     )
     assert done.returncode == 0, done.stderr
     page = Path("out/report.html").read_text()
-    for part in ("8 rows: 8 flown, 0 failed", "frame.mass", "quadcore run quadrotor", "data:image"):
+    for part in ("8 rows: 8 flown, 0 failed", "frame.mass", "quadcore run quadrotor", "<svg "):
         assert part in page
     assert {path.name for path in Path("out").iterdir()} == {
         "table.csv", "table.parquet", "sweep.json", "report.html", "measure.png",

@@ -10,6 +10,7 @@ from typing import Sequence
 
 from .. import __version__
 from .._core import FlightError, QuadcoreError
+from ..report.drawing import FORMATS, use_formats
 from ..report.run_record import record_command
 from ..simulation.engines import ENGINE, STUDY_ENGINE
 from ..support import interrupts
@@ -112,7 +113,7 @@ def _run_command(argv: Sequence[str] | None) -> int:
             if "action" not in arguments:
                 parser.error("name a COMMAND")
             arguments.words = words
-            with record_command(words):
+            with record_command(words), use_formats(getattr(arguments, "format", FORMATS[:1])):
                 arguments.action(arguments)
             sys.stdout.flush()
     except QuadcoreError as error:

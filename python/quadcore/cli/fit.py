@@ -124,6 +124,7 @@ def register(commands: Any) -> None:
         help="folder for page, logs, errors of --judge and, without -o, the model; or, if it ends "
         "in .urdf, the model to write",
     )
+    options.add_format(parser)
     options.add_quiet(parser)
 
 

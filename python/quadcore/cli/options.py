@@ -11,6 +11,7 @@ from .._core import engines
 from ..control import controllers, references
 from ..formats.recordings import list_mappings
 from ..model import resources
+from ..report.drawing import FORMATS
 from ..simulation.engines import ENGINE, list_engines
 from ..simulation.scenarios import NONE
 from ..studies.options import (
@@ -291,6 +292,19 @@ def add_out(
         "--out", metavar="DIR", type=Path, default=default, help=f"folder for {contents}{written}"
     )
     group.add_argument("--no-plots", action="store_true", help=f"write no {plots}")
+    add_format(parser)
+
+
+def add_format(parser: argparse.ArgumentParser) -> None:
+    """Add the option that chooses the formats of plot files."""
+    find_group(parser, OUTPUT).add_argument(
+        "--format",
+        metavar="A,B",
+        type=parse.several(FORMATS),
+        default=[FORMATS[0]],
+        help=f"formats of the plot files: {', '.join(FORMATS)} (default: {FORMATS[0]}); pages "
+        "contain SVG, and PDF to save if it is chosen",
+    )
 
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:

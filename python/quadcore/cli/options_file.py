@@ -11,6 +11,7 @@ from typing import Callable, Iterator, TypeVar
 import yaml
 
 from .._core import InputError
+from ..report.drawing import set_formats
 from ..support.yaml_nodes import find_line, read_pairs, read_root, read_scalar
 from .parser import end_sentence
 
@@ -31,6 +32,7 @@ def make_plan(
         return arguments, plan(arguments)
     file = OptionsFile(path, arguments.parser)
     arguments = file.put_beneath(arguments)
+    set_formats(arguments.format)
     with file.locate_errors():
         return arguments, plan(arguments)
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any, List, Sequence
 
 from ..report.decimation import decimate
+from ..report.drawing import save_drawings
 from ..simulation.log import Log
 from ..studies.options import OUTPUT
-from ..studies.table import save_files
 from ..support.output_files import make_folder
 from . import options, terminal
 from .parser import add_command, find_group
@@ -39,6 +39,7 @@ def register(commands: Any) -> None:
         default=_OUT,
         help=f"folder for the plots (default: {_OUT})",
     )
+    options.add_format(parser)
     options.add_quiet(parser)
 
 
@@ -57,10 +58,10 @@ def plot_logs(arguments: argparse.Namespace) -> None:
 
 
 def _plot_together(names: Sequence[str], logs: Sequence[Log], folder: Path) -> List[Path]:
-    from ..report.plots import png
+    from ..report.plots import finish
     from ..studies.compare.plots import Curve, draw  # matplotlib is slow to import
 
     curves = [Curve(name, decimate(log, _ROWS)) for name, log in zip(names, logs)]
     figures = draw(curves, curves[0].log, names[0])
     make_folder(folder)
-    return save_files(folder, {f"{name}.png": png(figure) for name, figure in figures.items()})
+    return save_drawings(folder, {name: finish(figure) for name, figure in figures.items()})

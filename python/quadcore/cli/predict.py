@@ -47,6 +47,7 @@ def register(commands: Any) -> None:
         "--out", metavar="DIR", type=Path, default=_OUT,
         help=f"folder for page, table and logs (default: {_OUT})",
     )  # fmt: skip
+    options.add_format(parser)
     options.add_quiet(parser)
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import List, Sequence, Tuple
+from typing import Dict, List, Sequence, Tuple
 
 from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
+from ..report.drawing import Drawing, name_files
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
@@ -55,6 +56,12 @@ def write_description(
     return [arguments.out / MODEL, *write_flights(arguments.out, [flight], settings, MODEL)]
 
 
+def _draw(log: Log, folder: Path) -> Dict[str, Drawing]:
+    from ..report.log_plots import draw  # matplotlib is slow to import
+
+    return draw(log, folder)
+
+
 def write_results(
     arguments: argparse.Namespace,
     plan: FlightPlan,
@@ -69,7 +76,7 @@ def write_results(
     log.per_command = per_command(simulation)
     name = f"{simulation.model.name}, {simulation.engine}"
     log.title = ", ".join(filter(None, (name, log.title)))
-    plots = [] if arguments.no_plots else log.plot(arguments.out)
+    plots = {} if arguments.no_plots else _draw(log, arguments.out)
     page = arguments.out / PAGE
     flight = PlayerFlight(
         name,
@@ -83,6 +90,7 @@ def write_results(
         title=name,
         rows=rows,
         player=make_section([flight], draw_world(simulation.world)),
-        plots=[(_PLOTS.get(file.stem, file.stem), file.read_bytes()) for file in plots],
+        plots=[(name, _PLOTS.get(name, name), drawing) for name, drawing in plots.items()],
     )
-    return [*plots, page]
+    files = [file for name, drawing in plots.items() for file in name_files(name, drawing)]
+    return [*(arguments.out / file for file in files), page]

@@ -100,6 +100,7 @@ def register(commands: Any) -> None:
     )
     options.add_vary(parser, f", scenario{options.CONTROLLER_KEYS}")
     options.add_study(parser, ControlOptions, STUDY_ENGINE)
+    options.add_format(parser)
 
 
 def tune_controller(arguments: argparse.Namespace) -> None:

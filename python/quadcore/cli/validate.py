@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Union
 from rich.table import Table
 
 from .._core import FlightError, InputError, QuadcoreError, engines
+from ..report.drawing import Drawing
 from ..simulation.flight_plan import FlightPlan
 from ..studies.executor import run_contained
 from ..studies.options import FLIGHT, STUDY
@@ -189,24 +190,24 @@ def _write(study: Study, out: Path) -> List[Path]:
         return [write_report(study, {}, out), *tables]
 
 
-def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> Dict[str, bytes]:
+def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> Dict[str, Drawing]:
     """Write each figure as soon as it is drawn, and then the page with all figures."""
     from ..thesis.validation.figures import list_figures
     from ..thesis.validation.output import write_figure, write_report
 
     wanted = list_figures(study)
     names = list(wanted)
-    drawn: Dict[str, bytes] = {}
+    drawn: Dict[str, Drawing] = {}
     failed: List[str] = []
 
-    def draw(name: str) -> bytes:
+    def draw(name: str) -> Drawing:
         function, what = wanted[name]
         return function(*what)
 
     try:
         with terminal.show_progress(arguments.quiet, "drawing") as progress:
 
-            def take(index: int, picture: Union[bytes, QuadcoreError]) -> None:
+            def take(index: int, picture: Union[Drawing, QuadcoreError]) -> None:
                 name = names[index]
                 if isinstance(picture, QuadcoreError):
                     failed.append(f"{name}: {picture}")

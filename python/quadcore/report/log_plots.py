@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING, Any, Callable, Sequence, Tuple
 
 import numpy as np
 
-from ..support.output_files import atomic_write, make_folder
+from ..support.output_files import make_folder
 from ..support.rotation import unwrap_angles
 from .colours import PALETTE
+from .drawing import Drawing, save_drawings
 from .plots import (
     AXES,
     NOTHING,
     REFERENCE,
     WHOLE,
     add_unslowed_axis,
+    finish,
     flatten,
     make_figure,
     panels,
-    png,
     space,
 )
 
@@ -33,13 +34,13 @@ _PLACES = ("x (m)", "y (m)", "z (m)")
 _ANGLES = ("roll (deg)", "pitch (deg)", "yaw (deg)")
 
 
-def draw(log: Trajectory, directory: Path) -> list[Path]:
+def draw(log: Trajectory, directory: Path) -> dict[str, Drawing]:
     """Draw every plot of a flight into a folder, which is made if missing.
 
     Returns
     -------
-    list of Path
-        PNG files written.
+    dict of str to Drawing
+        Drawings by name; their files are written.
 
     Raises
     ------
@@ -59,13 +60,11 @@ def draw(log: Trajectory, directory: Path) -> list[Path]:
         del plots["wrenches"]
     if "error" in log.topics:
         plots["error"] = _draw_error
-    written = []
+    drawings = {}
     for name, draw_plot in plots.items():
-        file = directory / f"{name}.png"
-        with atomic_write(file) as stream:
-            stream.write(png(draw_plot(log)))
-        written.append(file)
-    return written
+        drawings[name] = finish(draw_plot(log))
+        save_drawings(directory, {name: drawings[name]})
+    return drawings
 
 
 def draw_overview(log: Trajectory) -> Figure:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import base64
 import re
 from pathlib import Path
-from typing import List, Match
+from typing import List, Match, Union
 
 import jinja2
 
 from ..support.input_files import is_file
 from ..support.output_files import atomic_write, encode_text
+from .drawing import Drawing
 from .packing import compress
 from .run_record import describe_command
 
@@ -40,7 +41,7 @@ def render(template: str, **values: object) -> str:
     ----------
     template
         Name of a file in ``templates/``; pages extend ``page.html``. The filter ``image`` embeds a
-        PNG: ``{{ bytes | image("caption") }}``.
+        `Drawing` or a PNG: ``{{ drawing | image("name") }}``.
     values
         Variables of the template; texts are escaped.
     """
@@ -51,7 +52,7 @@ def render(template: str, **values: object) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["image"] = embed_image
+    environment.filters["image"] = embed_figure
     text = environment.get_template(template).render({"run": {}, "conditions": "", **values})
     return _add_player(text) if _PLAYER in text and "</body>" in text else text
 
@@ -82,6 +83,25 @@ def _add_contents(page: str) -> str:
     links = [f'<a href="#section-{i}">{title}</a>' for i, title in enumerate(titles, start=1)]
     contents = f'<nav aria-label="contents">{" ".join(links)}</nav>' if len(links) > 1 else ""
     return page.replace("<!-- contents -->", contents, 1)
+
+
+def embed_figure(drawing: Union[Drawing, bytes], name: str) -> str:
+    """Make an HTML figure of a drawing, or of the bytes of a PNG, with buttons that save it."""
+    from markupsafe import Markup
+
+    if isinstance(drawing, bytes):
+        return embed_image(drawing, name)
+    title = drawing.title or name
+    svg = drawing.svg.replace("<svg", Markup('<svg role="img" aria-label="{}"').format(title), 1)
+    links = Markup(
+        '<button type="button" class="save-svg" data-name="{}">Save SVG</button>'
+    ).format(name)
+    if "pdf" in drawing.files:
+        source = f"data:application/pdf;base64,{base64.b64encode(drawing.files['pdf']).decode()}"
+        links += Markup(' <a download="{}.pdf" href="{}">PDF</a>').format(name, source)
+    return Markup('<figure class="plot">{}<figcaption>{}</figcaption></figure>').format(
+        Markup(svg), links
+    )
 
 
 def embed_image(data: bytes, caption: str) -> str:

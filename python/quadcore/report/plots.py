@@ -5,11 +5,13 @@ from __future__ import annotations
 import io
 import os
 import sys
-from typing import Any, Sequence, Tuple
+from typing import Any, Dict, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .._core import InputError
+from ..support.output_files import encode_text
+from .drawing import Drawing, get_formats, make_element
 
 
 def _describe_mix() -> str:
@@ -43,14 +45,31 @@ finally:
 AXES = ("#d55e00", "#009e73", "#0072b2")  # colours of x, y, z in all plots
 REFERENCE = {"color": "0.25", "linestyle": (0, (4, 3)), "linewidth": 1, "label": "reference"}
 WHOLE = (0.0, 0.02, 0.94, 0.94)  # part of a figure that 3D axes fill
+_METADATA: Dict[str, Dict[str, Optional[str]]] = {  # without versions and dates
+    "png": {"Software": "quadcore"},
+    "svg": {"Date": None, "Creator": "quadcore"},
+    "pdf": {"CreationDate": None, "Creator": "quadcore", "Producer": "quadcore"},
+}
 NOTHING = 1e-6  # m, m/s, rad/s, deg: a smaller range is rounding noise
 
 
 def png(figure: Figure) -> bytes:
     """Return a figure as PNG; equal flights give equal bytes."""
+    return _write(figure, "png")
+
+
+def finish(figure: Figure) -> Drawing:
+    """Draw a figure as an SVG element, and as files in the formats of `get_formats`."""
+    element = make_element(_write(figure, "svg").decode())
+    document = encode_text(f'<?xml version="1.0" encoding="utf-8"?>\n{element}\n')
+    files = {kind: document if kind == "svg" else _write(figure, kind) for kind in get_formats()}
+    return Drawing(str(figure.get_label()), element, files)
+
+
+def _write(figure: Figure, kind: str) -> bytes:
     FigureCanvasAgg(figure)
     stream = io.BytesIO()
-    figure.savefig(stream, format="png", metadata={"Software": "quadcore"})  # without a version
+    figure.savefig(stream, format=kind, metadata=_METADATA[kind])
     return stream.getvalue()
 
 
@@ -161,6 +180,7 @@ def flatten(axes: Any, least: float) -> None:
 def make_figure(title: str, width: float, height: float, dpi: int = 150) -> Figure:
     """Make an empty figure; width and height in inches."""
     figure = Figure(figsize=(width, height), dpi=dpi)
+    figure.set_label(title)
     figure.suptitle(
         title, x=0.1 / width, y=1 - 0.1 / height, ha="left", va="top", fontsize="medium"
     )

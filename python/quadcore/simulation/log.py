@@ -12,6 +12,7 @@ from .._core import InputError
 from ..formats import find_format, mat
 from ..formats.recordings import is_recording, make_log_rows, read_recording
 from ..formats.rows import LogFile, list_wrench_columns, split_columns
+from ..report.drawing import check_formats, get_formats, name_files, use_formats
 from ..support.arguments import NAME, check
 from ..support.import_lock import LOCK
 from ..support.optional_packages import require_package
@@ -217,13 +218,15 @@ class Log(Trajectory):
             table = np.column_stack([table, *of_topics])
         return columns, table, self.wrenches, self.ignored
 
-    def plot(self, directory: PathLike) -> list[Path]:
-        """Plot the flight to PNG files.
+    def plot(self, directory: PathLike, formats: Sequence[str] = ()) -> list[Path]:
+        """Plot the flight to files.
 
         Parameters
         ----------
         directory : str or path
             Folder of the files; a missing folder is created.
+        formats : sequence of str
+            Some of png, svg, pdf (default: those of the command line, else png).
 
         Returns
         -------
@@ -233,13 +236,16 @@ class Log(Trajectory):
         Raises
         ------
         InputError
-            If a file cannot be written.
+            If a file cannot be written, or there is no such format.
         """
         folder = _check_path(directory, "directory")
+        chosen = check_formats(formats) if formats else get_formats()
         with LOCK:
             from ..report.log_plots import draw  # matplotlib is slow to import
 
-        return draw(self, folder)
+        with use_formats(chosen):
+            drawings = draw(self, folder)
+        return [folder / file for name in drawings for file in name_files(name, drawings[name])]
 
     def _check_suffix(self, path: PathLike, suffix: str) -> None:
         if _check_path(path).suffix.lower() != suffix:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Callable, Iterator, List, Mapping, Optional, Sequence, Set
 
 from .._core import InputError
+from ..report.drawing import FORMATS, Drawing, name_files, save_drawings
 from ..support import interrupts
 from ..support.input_files import read_bytes
 from ..support.output_files import make_write_error, prepare_folder
@@ -129,15 +130,16 @@ def remove_plots(folder: Path, document: str, is_plot: Callable[[str], bool]) ->
     """Remove the plots of an earlier study; `is_plot` receives a name without suffix."""
 
     def is_ours(name: str) -> bool:
-        return name.endswith(".png") and is_plot(name[: -len(".png")])
+        stem, _, kind = name.rpartition(".")
+        return kind in FORMATS and is_plot(stem)
 
     remove_listed_files(folder, document, "pictures", is_ours)
 
 
 def save_plots(
-    folder: Path, document: str, content: Mapping[str, Any], images: Mapping[str, bytes]
+    folder: Path, document: str, content: Mapping[str, Any], images: Mapping[str, Drawing]
 ) -> List[Path]:
     """Write plots, by name without suffix, and list them in a document with this content."""
-    pictures = {f"{name}.png": data for name, data in images.items()}
-    save_files(folder, {document: make_json({**content, "pictures": list(pictures)})})
-    return save_files(folder, pictures)
+    pictures = [file for name, drawing in images.items() for file in name_files(name, drawing)]
+    save_files(folder, {document: make_json({**content, "pictures": pictures})})
+    return save_drawings(folder, images)

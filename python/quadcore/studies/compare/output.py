@@ -11,6 +11,7 @@ import numpy as np
 from ...model.obstacles import draw_world, join_worlds
 from ...model.visuals import read_vehicle
 from ...report.decimation import pick_evenly
+from ...report.drawing import Drawing, save_drawings
 from ..flight_folder import DOCUMENT, WrittenFlight, remove_flights, write_flights
 from ..output_folder import remove_listed_files
 from ..table import (
@@ -84,7 +85,7 @@ def write(
     written = save_files(folder, tables)
     written += write_flights(folder, _list_flights(comparison, plan) if has_logs else [])
     images = _draw_plots(comparison, plan) if plots else {}
-    written += save_files(folder, {f"{name}.png": data for name, data in images.items()})
+    written += save_drawings(folder, images)
     page = folder / "report.html"
     values = _page_values(comparison, plan, flight, images)
     write_page(page, "compare.html", **values, player=_make_player(comparison, plan, plots))
@@ -96,9 +97,9 @@ def summarise(comparison: Comparison) -> str:
     return count_outcomes(comparison.table["failure"].tolist())
 
 
-def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
+def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, Drawing]:
     # matplotlib is slow to import.
-    from ...report.plots import png
+    from ...report.plots import finish
     from . import plots
 
     curves, against = [], None
@@ -109,7 +110,7 @@ def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     if against is None:
         return {}
     figures = plots.draw(curves, against.log, against.label)
-    return {name: png(figure) for name, figure in figures.items()}
+    return {name: finish(figure) for name, figure in figures.items()}
 
 
 def _list_flights(comparison: Comparison, plan: Plan) -> List[WrittenFlight]:
@@ -167,7 +168,7 @@ def _baseline_number(comparison: Comparison) -> Optional[int]:
 
 
 def _page_values(
-    comparison: Comparison, plan: Plan, flight: Mapping[str, str], images: Mapping[str, bytes]
+    comparison: Comparison, plan: Plan, flight: Mapping[str, str], images: Mapping[str, Drawing]
 ) -> Dict[str, Any]:
     units = {state: choose_display_unit(unit) for state, unit in comparison.states.items()}
     rows = []

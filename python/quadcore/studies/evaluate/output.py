@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Mapping, Sequence
 import numpy as np
 
 from ... import __version__
+from ...report.drawing import Drawing
 from ...support.output_files import encode_text
 from ..flight_folder import DOCUMENT, remove_flights
 from ..output_folder import remove_plots, save_plots
@@ -226,7 +227,9 @@ def format_margins(evaluation: Evaluation) -> List[Dict[str, str]]:
     ]
 
 
-def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Dict[str, Any]:
+def _page_values(
+    evaluation: Evaluation, plan: Plan, images: Mapping[str, Drawing]
+) -> Dict[str, Any]:
     failures = [
         {
             "label": f"{make_label(row, evaluation.table)}, seed {row['seed']}",

@@ -9,7 +9,8 @@ import numpy as np
 
 from ...report.colours import PALETTE, curve_style
 from ...report.decimation import pick_evenly
-from ...report.plots import REFERENCE, dress, make_figure, panels, png
+from ...report.drawing import Drawing
+from ...report.plots import REFERENCE, dress, finish, make_figure, panels
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,7 +47,7 @@ Flights = List[DrawnFlight]
 
 def draw(
     evaluation: Evaluation, events: Optional[Mapping[str, Sequence[Event]]] = None
-) -> Dict[str, bytes]:
+) -> Dict[str, Drawing]:
     """Draw all plots of an evaluation.
 
     Parameters
@@ -59,7 +60,7 @@ def draw(
     Returns
     -------
     dict
-        PNG by name, in the order of the page.
+        `Drawing` by name, in the order of the page.
     """
     figures: Dict[str, Figure] = {}
     for i, ((reference, scenario), flights) in enumerate(group_flights(evaluation).items(), 1):
@@ -82,7 +83,7 @@ def draw(
             for row in evaluation.margins
         ]
         figures["rates"] = _draw_rates(evaluation.margins, of_margins)
-    return {name: png(figure) for name, figure in figures.items()}
+    return {name: finish(figure) for name, figure in figures.items()}
 
 
 def is_plot(name: str) -> bool:

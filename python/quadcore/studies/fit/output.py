@@ -11,6 +11,7 @@ import numpy as np
 from ..._core import Model, World
 from ...model.obstacles import draw_world
 from ...model.visuals import read_vehicle
+from ...report.drawing import save_drawings
 from ...simulation.log import Log
 from ..flight_folder import (
     DOCUMENT,
@@ -114,7 +115,7 @@ def write_fit(folder: Path, found: Fit, world: World) -> List[Path]:
     rows = _list_parameters(found.start, found.values, found.identified.deviations, found.units)
     shown = [(each, unit, list(map(format_number, values))) for each, unit, values in residuals]
     images = draw_differences(found.motion) if found.motion else {}
-    written = save_files(folder, {f"{name}.png": data for name, data in images.items()})
+    written = save_drawings(folder, images)
     page = _write_page(
         folder, "fit.html", found.motion, found.model, world, verdict=f"{verdict}.",
         statements=[f"{line[:1].upper()}{line[1:]}." for line in found.describe()],
@@ -173,10 +174,7 @@ def _write_errors(folder: Path, judgement: Judgement) -> Tuple[List[Path], List[
     for model, channel, unit, numbers in judgement.list_rows():
         rows.append([model, channel, unit, *map(repr, numbers)])
     images = draw(judgement)
-    written = save_files(
-        folder,
-        {ERRORS: make_csv(rows), **{f"{name}.png": data for name, data in images.items()}},
-    )
+    written = save_files(folder, {ERRORS: make_csv(rows)}) + save_drawings(folder, images)
     return written, [{"name": name, "data": data} for name, data in images.items()]
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence, Tuple
 import numpy as np
 
 from ...report.colours import curve_style
-from ...report.plots import panels, png
+from ...report.drawing import Drawing
+from ...report.plots import finish, panels
 from ..flight_differences import compute_differences
 from .windows import CHANNELS, INSTANTS
 
@@ -18,13 +19,13 @@ if TYPE_CHECKING:
     from .judgement import Judgement
 
 
-def draw(judgement: Judgement) -> Dict[str, bytes]:
-    """Draw the errors of all models; PNG by name."""
-    return {"errors": png(_draw_errors(judgement.errors))}
+def draw(judgement: Judgement) -> Dict[str, Drawing]:
+    """Draw the errors of all models; `Drawing` by name."""
+    return {"errors": finish(_draw_errors(judgement.errors))}
 
 
-def draw_differences(motion: Sequence[Tuple[str, Log]]) -> Dict[str, bytes]:
-    """Draw the difference of each model from the measured motion; PNG by name."""
+def draw_differences(motion: Sequence[Tuple[str, Log]]) -> Dict[str, Drawing]:
+    """Draw the difference of each model from the measured motion; `Drawing` by name."""
     (_, measured), *models = motion
     figure, grid = panels("Difference from the measured motion", 2, height=1.8, above=0.75)
     for number, (name, log) in enumerate(models, start=1):
@@ -34,7 +35,7 @@ def draw_differences(motion: Sequence[Tuple[str, Log]]) -> Dict[str, bytes]:
     for axes, label in zip(grid[:, 0], ("position (m)", "attitude (deg)")):
         axes.set_ylabel(label)
     _add_legend(figure, grid[0, 0])
-    return {"residuals": png(figure)}
+    return {"residuals": finish(figure)}
 
 
 def _draw_errors(errors: Mapping[str, Mapping[str, np.ndarray]]) -> Figure:

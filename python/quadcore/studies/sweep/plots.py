@@ -8,7 +8,8 @@ import numpy as np
 
 from ...report.colours import PALETTE
 from ...report.decimation import pick_evenly
-from ...report.plots import dress, make_figure, panels, png
+from ...report.drawing import Drawing
+from ...report.plots import dress, finish, make_figure, panels
 from .plan import AnyPlan
 from .sensitivity import COMBINATION, list_combinations, list_numeric_axes, measure_effect
 
@@ -28,7 +29,7 @@ Columns = Mapping[str, np.ndarray]
 
 def draw(
     plan: AnyPlan, columns: Columns, sensitivities: Sequence[Mapping[str, Any]], measure: str
-) -> Dict[str, bytes]:
+) -> Dict[str, Drawing]:
     """Draw the distribution and the sensitivities of a metric.
 
     Parameters
@@ -41,7 +42,7 @@ def draw(
     Returns
     -------
     dict
-        PNG by name.
+        `Drawing` by name.
     """
     found = list(list_combinations(columns))
     parts = [
@@ -69,7 +70,7 @@ def draw(
         figures["surface"] = _draw_surface(parts, columns, leading, measure, label, note)
     if len(axes) > 1:
         figures["parallel"] = _draw_parallel(parts, columns, axes, measure, label, note)
-    return {name: png(figure) for name, figure in figures.items()}
+    return {name: finish(figure) for name, figure in figures.items()}
 
 
 Parts = List[Tuple[str, np.ndarray]]

@@ -8,6 +8,7 @@ from typing import Any, Dict, List, Mapping, Tuple, Union
 from ..._core import QuadcoreError
 from ...model.obstacles import draw_world
 from ...model.visuals import read_vehicle
+from ...report.drawing import Drawing, save_drawings
 from ...simulation.log import Log
 from ...support.warning import suppress_warnings
 from ..executor import run_contained
@@ -19,7 +20,7 @@ from ..flight_folder import (
     write_flights,
     write_logs,
 )
-from ..table import format_number, format_settings, save_files
+from ..table import format_number, format_settings
 from ..time_limit import time_limit
 from .problem import Flown, Problem, Trial
 from .search import Tuning
@@ -61,7 +62,7 @@ def write(found: Tuning, problem: Problem, folder: Path, plots: bool = True) -> 
     ]
     written = write_flights(folder, listed)
     images = _draw(found) if plots else {}
-    written += save_files(folder, {f"{name}.png": data for name, data in images.items()})
+    written += save_drawings(folder, images)
     history = found.gains.history
     write_page(
         folder / PAGE,
@@ -148,9 +149,9 @@ def _make_player(flown: List[Tuple[str, Log]], trial: Trial) -> Any:
     return make_section(shown, draw_world(trial.plan.world))
 
 
-def _draw(found: Tuning) -> Dict[str, bytes]:
+def _draw(found: Tuning) -> Dict[str, Drawing]:
     """Draw the objective of each gain set."""
-    from ...report.plots import png  # matplotlib is slow to import
+    from ...report.plots import finish  # matplotlib is slow to import
     from .plots import draw_search
 
-    return {"search": png(draw_search(found.evaluations))}
+    return {"search": finish(draw_search(found.evaluations))}

@@ -8,7 +8,8 @@ from typing import Any, Dict, List, Sequence, Tuple
 import numpy as np
 
 from ...report.colours import PALETTE
-from ...report.plots import dress, make_figure, png
+from ...report.drawing import Drawing
+from ...report.plots import dress, finish, make_figure
 from .damping import Damping
 from .error_budget import Chain, Link
 from .output import size
@@ -19,7 +20,7 @@ _NO_DISTANCE = 1e-9  # m; what is less is rounding
 _COMMON = "0.55"  # colour of a link that belongs to several chains
 
 
-def draw_chains(chains: Sequence[Chain]) -> bytes:
+def draw_chains(chains: Sequence[Chain]) -> Drawing:
     """Draw the share of each link in the chains of one drag."""
     groups = _list_bars(chains)
     bars = sum(len(group) for group in groups.values())
@@ -58,7 +59,7 @@ def draw_chains(chains: Sequence[Chain]) -> bytes:
         handlelength=1.0,
         columnspacing=1.0,
     )
-    return png(figure)
+    return finish(figure)
 
 
 def _list_bars(chains: Sequence[Chain]) -> Dict[str, List[Tuple[str, Link]]]:
@@ -90,7 +91,7 @@ def _choose_colour(name: str, chains: Sequence[Chain]) -> str:
     return PALETTE[names.index(name) % len(PALETTE)] if name in names else _COMMON
 
 
-def draw_damping(damping: Sequence[Damping]) -> bytes:
+def draw_damping(damping: Sequence[Damping]) -> Drawing:
     """Draw the decay of a pitch rate without torque."""
     figure = make_figure("Decay of a pitch rate in free fall, without air", 6.4, 3.4, _DPI)
     axes = figure.add_axes((0.12, 0.16, 0.85, 0.72))
@@ -116,4 +117,4 @@ def draw_damping(damping: Sequence[Damping]) -> bytes:
     axes.set_xlabel("sim_slow")
     axes.set_ylabel("decay (1/s)")
     axes.legend(loc="lower left", frameon=False, fontsize="small")
-    return png(figure)
+    return finish(figure)

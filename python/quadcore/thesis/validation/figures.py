@@ -7,7 +7,8 @@ from typing import Any, Callable, Dict, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from ...report.colours import PALETTE
-from ...report.plots import make_figure, png, subplots, widen
+from ...report.drawing import Drawing
+from ...report.plots import finish, make_figure, subplots, widen
 from .cause_plots import draw_chains, draw_damping
 from .experiment import MODEL, Case
 from .states import extract_states
@@ -48,7 +49,7 @@ def collect_curves(study: Study, drag: str) -> Curves:
     return Curves(drag, study.engines, study.sim_slow, model.time, extract_states(model), plants)
 
 
-def draw(what: Curves, kind: str) -> bytes:
+def draw(what: Curves, kind: str) -> Drawing:
     """Draw a figure of chapter 6 with one column per engine and one line per slowdown."""
     title, columns, labels, scale, error, least = KINDS[kind]
     title = f"{title}, drag: {what.drag}"
@@ -78,10 +79,10 @@ def draw(what: Curves, kind: str) -> bytes:
     for axes in panels[-1]:
         axes.set_xlabel("time (s)")
     _add_legend(figure, panels.flat)
-    return png(figure)
+    return finish(figure)
 
 
-def draw_commands(commands: np.ndarray, duration: float) -> bytes:
+def draw_commands(commands: np.ndarray, duration: float) -> Drawing:
     """Draw the commands."""
     n = commands.shape[1] - 1
     title = "Input: magnitude of the rotors' speeds (rad/s)"
@@ -92,12 +93,12 @@ def draw_commands(commands: np.ndarray, duration: float) -> bytes:
         axes.set_ylabel(f"rotor {i}")
     panels[-1, 0].set_xlabel("time (s)")
     panels[-1, 0].set_xlim(0, duration)
-    return png(figure)
+    return finish(figure)
 
 
-def list_figures(study: Study) -> Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]]:
+def list_figures(study: Study) -> Dict[str, Tuple[Callable[..., Drawing], Tuple[Any, ...]]]:
     """List every figure of a study by name, as a function and its arguments."""
-    result: Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]] = {
+    result: Dict[str, Tuple[Callable[..., Drawing], Tuple[Any, ...]]] = {
         "commands": (draw_commands, (study.experiment.commands, study.experiment.plan.duration)),
     }
     if study.damping:

@@ -9,6 +9,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Sequence
 import numpy as np
 
 from ..._core import InputError
+from ...report.drawing import FORMATS, Drawing, save_drawings
 from ...report.page import write_page
 from ...studies.table import make_csv, make_json, save_files
 from .animation import make_player, write_drawn_flights
@@ -18,7 +19,7 @@ from .states import STATES
 from .study import Row, Study
 from .thesis_figures import KINDS, thesis_figures
 
-PICTURE = re.compile(rf"(commands|damping|(chain|{'|'.join(KINDS)})_[a-z]+)\.png")
+PICTURE = re.compile(rf"(commands|damping|(chain|{'|'.join(KINDS)})_[a-z]+)\.({'|'.join(FORMATS)})")
 _SIZES = (*STATES, "distance")
 _REPORTED = ("max", "rms")
 
@@ -40,7 +41,7 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
         "chains.csv": make_csv(_list_chains(study.chains)),
         "validation.json": make_json(to_json(study)),
     }
-    for old in directory.glob("*.png"):
+    for old in directory.iterdir():
         if PICTURE.fullmatch(old.name):
             try:
                 old.unlink()
@@ -50,7 +51,7 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
     return save_files(directory, files)
 
 
-def write_figure(name: str, picture: bytes, directory: Path) -> None:
+def write_figure(name: str, picture: Drawing, directory: Path) -> None:
     """Write a figure of `figures.list_figures`.
 
     Raises
@@ -58,16 +59,16 @@ def write_figure(name: str, picture: bytes, directory: Path) -> None:
     InputError
         If the file cannot be written.
     """
-    save_files(directory, {f"{name}.png": picture})
+    save_drawings(directory, {name: picture})
 
 
-def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -> Path:
+def write_report(study: Study, pictures: Mapping[str, Drawing], directory: Path) -> Path:
     """Write the report page.
 
     Parameters
     ----------
     pictures
-        PNG files by the names of `figures.list_figures`; may be empty.
+        Drawings by the names of `figures.list_figures`; may be empty.
 
     Raises
     ------
