@@ -45,6 +45,8 @@ def test_type_checkers_see_the_options_that_there_are():
     for kind, keywords in (
         (options.Options, options.Keywords),
         (options.ControlOptions, options.ControlKeywords),
+        (options.CriteriaOptions, options.CriteriaKeywords),
+        (options.EvaluateOptions, options.EvaluateKeywords),
     ):
         declared = {each.name: each.type for each in fields(kind)}
         inherited.update(keywords.__annotations__)

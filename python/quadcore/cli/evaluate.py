@@ -68,7 +68,7 @@ def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
         evaluation = fly_plan(plan, progress, arguments.margins)
     files = write_files(evaluation, not arguments.no_plots)
     if not arguments.quiet:
-        show(evaluation, files)
+        show(evaluation, files, plan.notes)
     report_failures(
         [row["failure"] for row in evaluation.table],
         sum(outcome.refused for outcome in evaluation.outcomes),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .._core import InputError
 from ..control import controllers, gains, references
@@ -12,6 +12,7 @@ from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike, check_callable, set_parameter
 from ..control.fair_controller import PRIVILEGED, FairController
 from ..control.keywords import ReferenceName
+from ..control.rate_and_delay import DELAY
 from ..control.references import ReferenceLike
 from ..simulation.flight_plan import FlightPlan
 from ..support.arguments import shorten
@@ -68,6 +69,9 @@ class ControlSetup:
         self.shapes = [make_reference(thing) for _, thing in references_]
         self.timing = {"rate": controller_rate, "delay": delay}
         self.on_reference = on_reference
+        self.computation_times: Dict[int, float] = {}
+        """Times that delay each command in addition to its delay, s, by index of the controller."""
+        self._own_delays: Dict[Tuple[int, str], float] = {}
         self._make_factory = lru_cache(maxsize=None)(
             lambda i, vehicle: _make_factory(self.things[i], vehicle)
         )
@@ -116,6 +120,13 @@ class ControlSetup:
         """Make a controller with some values for one flight of a vehicle."""
         given = {name: x for name, x in {**self.timing, **values}.items() if x is not None}
         made = self._make_factory(controller, vehicle)(given)
+        time = self.computation_times.get(controller, 0.0)
+        if time:
+            # An object is shared by its flights, so that its delay may contain the time already.
+            own = self._own_delays.setdefault(
+                (controller, vehicle), float(getattr(made, "delay", DELAY))
+            )
+            set_parameter(made, "delay", given.get("delay", own) + time)
         if self.privileged is False and not isinstance(made, BuiltInController):
             return FairController(made)
         return made

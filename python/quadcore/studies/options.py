@@ -269,6 +269,18 @@ class EvaluateOptions(CriteriaOptions):
     """Options of `evaluate`."""
 
     duration: float = field(default=30.0, metadata=change_option("duration"))
+    computation_time: Union[float, str, None] = field(default=None, metadata=_describe(
+        CONTROLLER, "computation-time", "S|measured",
+        "delay each command also by the computation time of its controller: in seconds, or as "
+        "measured on this machine",
+        parse.computation_time, arguments.COMPUTATION_TIME, "none",
+    ))  # fmt: skip
+
+
+class EvaluateKeywords(CriteriaKeywords, total=False):
+    """`EvaluateOptions` as keyword arguments, for type checkers."""
+
+    computation_time: Union[float, str, None]
 
 
 @dataclass(frozen=True)

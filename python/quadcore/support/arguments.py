@@ -153,6 +153,14 @@ VECTOR: Kind = (
 )
 LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
 WHOLE: Kind = (_is_whole, "a whole number")
+MEASURED = "measured"
+"""Computation time of a controller as measured on this machine."""
+COMPUTATION_TIME: Kind = (
+    lambda value: (
+        value in (None, MEASURED) or (isinstance(value, Real) and 0 <= float(value) < math.inf)
+    ),
+    f"seconds, at least 0, or '{MEASURED}'",
+)
 COUNT: Kind = (_is_count, "a whole number from 1 on")
 FLAG: Kind = (lambda value: isinstance(value, (bool, np.bool_)), "True or False")
 ANY: Kind = (lambda value: True, "")  # checked where it is read

@@ -7,6 +7,7 @@ import re
 from typing import Callable, Sequence
 
 from .._core import parse_number
+from .arguments import MEASURED
 
 
 def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
@@ -78,6 +79,11 @@ def not_negative(text: str) -> float:
     if value < 0:
         raise argparse.ArgumentTypeError(f"{text} is less than 0")
     return value
+
+
+def computation_time(text: str) -> float | str:
+    """Read a number that is at least 0, or the word ``measured``."""
+    return text if text == MEASURED else not_negative(text)
 
 
 def finite(text: str) -> float:

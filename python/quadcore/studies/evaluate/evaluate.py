@@ -34,7 +34,7 @@ from ..executor import contain_errors, count_cores, run_contained
 from ..grouped_flights import MOST_VECTORIZED, FlightRecord, fly_group, share_out, split
 from ..measured_flight import Outcome, fly_alone, measure_record
 from ..options import (
-    CriteriaKeywords,
+    EvaluateKeywords,
     EvaluateOptions,
     Names,
     Progress,
@@ -121,7 +121,7 @@ def evaluate(
     engine: Optional[AnyEngineName] = None,
     vary: Optional[Mapping[str, Values]] = None,
     margins: bool = False,
-    **options: Unpack[CriteriaKeywords],
+    **options: Unpack[EvaluateKeywords],
 ) -> Evaluation:
     """Measure the tracking error of controllers along references.
 
@@ -204,6 +204,8 @@ class _Flights:
         plan, rows = self._plan, range(len(self._plan))
         flights = [partial(plan.make_plan, case) for case in plan]
         fly = partial(self._fly_tasks, flights, self.outcomes, drawn=drawn)
+        if plan.measures_times:
+            plan.set_computation_times(self._measure_times())
         if plan.control.runs_user_code:
             fly([[i] for i in rows[:: len(plan.seeds)]])
             fly(self._group_other_seeds())
@@ -235,6 +237,11 @@ class _Flights:
             outcomes,
             units,
         )
+
+    def _measure_times(self) -> List[float]:
+        """Return the 99 % quantile of a call of each controller in its first flight, s."""
+        outcomes = self._fly_trials([Trial(i) for i in range(len(self._plan.control.controllers))])
+        return [outcome.slow_call if outcome.flew else nan for outcome in outcomes]
 
     def _fly_trials(self, trials: Sequence[Trial]) -> List[Outcome]:
         outcomes = [Outcome()] * len(trials)

@@ -23,6 +23,7 @@ from ..table import (
 )
 from .animations import make_animations, write_drawn_flights
 from .best_controllers import describe_seeds
+from .computation_times import summarise_computation_times
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
 from .margins import BOX, ENDS, format_margin
@@ -261,6 +262,7 @@ def _page_values(
             for row in compute_scenario_effects(evaluation.groups)
         ],
         "margins": format_margins(evaluation),
+        "computation_times": summarise_computation_times(evaluation, plan),
         "omitted_margins": plan.omitted_margins,
         "omitted_flights": _describe_omitted_flights(evaluation),
         "causes": list_unstable_axes(evaluation),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any, Dict, Iterator, Mapping, Sequence, Tuple, Union
 
@@ -10,6 +11,7 @@ from ...control.built_in import BuiltInController
 from ...simulation.engines import exerts_wrenches
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.scenario_events import Event
+from ...support.arguments import MEASURED
 from ..axes import Values
 from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
 from ..control_setup import Controllers, ControlSetup, References, add_labels
@@ -58,6 +60,11 @@ class Plan(Cases):
             privileged=options.privileged,
         )
         super().__init__(design, control, models, engines, options)
+        time = options.computation_time
+        self.measures_times = time == MEASURED
+        """Whether the computation times are to be measured before the flights."""
+        if time is not None and not self.measures_times:
+            self.set_computation_times([float(time)] * len(control.controllers))
         self.criteria = options.make_criteria()
         self.scenarios = [label_point(point) for point in design]
         self.lacking = trial.list_missing_effects(self.check()[0])
@@ -66,6 +73,24 @@ class Plan(Cases):
     def omitted_margins(self) -> str:
         """Margins that cannot be searched, with the reason, in one line; "" if all can."""
         return margins.describe_omitted(self.models[0], self.lacking)
+
+    def set_computation_times(self, times: Sequence[float]) -> None:
+        """Delay the commands of each controller by its computation time, s; NaN does not."""
+        known = {i: time for i, time in enumerate(times) if not math.isnan(time)}
+        self.control.computation_times.update(known)
+        if not self.measures_times:
+            return
+        labels = self.control.controllers
+        found = [f"{labels[i]} {1e3 * time:.3g} ms" for i, time in known.items()]
+        missing = [label for i, label in enumerate(labels) if i not in known]
+        self.notes = [
+            f"Commands are delayed by computation times measured on this machine, which differ in "
+            f"every study: {', '.join(found) or 'none'}.",
+            *(
+                f"The computation time of {label} is not measured, because its flight failed."
+                for label in missing
+            ),
+        ]
 
     def name_case(self, case: Case) -> Dict[str, Any]:
         """Return the names of a case, the first columns of the table."""
@@ -105,6 +130,8 @@ class Plan(Cases):
 
     def describe(self) -> Dict[str, Any]:
         """Return all settings except those of the controllers, as plain values."""
+        labels = self.control.controllers
+        times = {labels[i]: time for i, time in self.control.computation_times.items()}
         return {
             "controllers": self.control.controllers,
             "references": self.control.references,
@@ -112,4 +139,5 @@ class Plan(Cases):
             "models": self.models,
             "scenarios": self.scenarios,
             **self.list_settings(),
+            **({"computation_times": times} if times else {}),
         }
