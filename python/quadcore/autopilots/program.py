@@ -125,7 +125,7 @@ class Program:
         return f"Its last messages: {' | '.join(self._messages)}"
 
     def read_messages(self) -> None:
-        """Read what the program has printed; it would stop if nobody did."""
+        """Read what the program has printed, which would stop if the pipe were full."""
         while select.select([self._terminal], [], [], 0)[0]:
             try:
                 read = os.read(self._terminal, 65536)

@@ -43,7 +43,7 @@ def discard_output() -> None:
 
 
 def escape_controls(text: str) -> str:
-    """Escape control characters, which names of files may hold."""
+    """Escape control characters, which names of files may contain."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 

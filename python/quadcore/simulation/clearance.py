@@ -73,7 +73,7 @@ class Clearance:
         self._touches = bool(touches[-1])
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing, as no file is open."""
 
     def measures(self) -> Dict[str, float]:
         """Return the metrics ``clearance`` and ``collisions``; NaN without obstacles."""

@@ -46,7 +46,7 @@ class DecimatedRows:
         self._last = [] if is_picked else [rows[-1:].copy() for rows in (table, wrenches)]
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing, as no file is open."""
 
     def log(self) -> Log:
         """Return the picked rows; the title states N if it is not 1."""
@@ -86,7 +86,7 @@ class FastestRotor:
             self.time = table[-1, 0]
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing, as no file is open."""
 
 
 class TrackingError:
@@ -112,7 +112,7 @@ class TrackingError:
             self._late.popleft()
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing, as no file is open."""
 
     @property
     def max(self) -> float:

@@ -66,7 +66,7 @@ def step_response(log: Log) -> Optional[np.ndarray]:
 
 
 def _has_jumps(changes: np.ndarray) -> bool:
-    """Whether the changes of a reference from row to row differ as much as they are large."""
+    """Whether the changes of a reference from row to row vary by as much as their size."""
     largest = np.abs(changes).max(initial=0.0)
     return bool(np.abs(np.diff(changes)).max(initial=0.0) > _SUDDEN * largest)
 

@@ -29,7 +29,7 @@ def report_to(stream: IO[bytes]) -> None:
 
 
 def read_report(stream: IO[bytes]) -> str:
-    """Return the error of a limit that has ended the process with this file; "" if none has."""
+    """Read the message of the time limit that ended a process; "" if none did."""
     stream.seek(0)
     limit, _, traceback = stream.read().decode(errors="replace").partition("\n")
     return _describe(float(limit)) if traceback else ""

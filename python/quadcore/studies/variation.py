@@ -65,7 +65,7 @@ class Variation:
 
     @property
     def taken(self) -> List[str]:
-        """Names of the values of all flights."""
+        """Names of the parameters that all flights set."""
         return [*self.set, *(f"{XACRO}.{name}" for name in self.arguments)]
 
     def apply(self, plan: FlightPlan, model: int, point: Mapping[str, str]) -> FlightPlan:

@@ -115,7 +115,7 @@ def make_parts(
     categories: Union[str, Sequence[str], None],
     options: EvaluateOptions,
 ) -> List[Part]:
-    """Make the plans of a version; of the options, time limit and processes count."""
+    """Make the plans of a version; of the options, only time limit and processes have an effect."""
     chosen = _choose("vehicle", vehicles, list(definition.vehicles))
     kinds = _choose("category", categories, definition.categories)
     return [

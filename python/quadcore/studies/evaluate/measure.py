@@ -48,7 +48,7 @@ Files = Union[File, Sequence[File], Mapping[str, Union[File, Sequence[File]]]]
 
 
 class Request(NamedTuple):
-    """Recorded flights to measure, and how."""
+    """Recorded flights to measure, with their reference and alignment."""
 
     logs: Sequence[Tuple[str, File]]
     """Label and log of each flight."""

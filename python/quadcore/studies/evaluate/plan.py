@@ -75,7 +75,7 @@ class Plan(Cases):
         return margins.describe_omitted(self.models[0], self.lacking)
 
     def set_computation_times(self, times: Sequence[float]) -> None:
-        """Delay the commands of each controller by its computation time, s; NaN does not."""
+        """Delay the commands of each controller by its computation time, s; NaN: no delay."""
         known = {i: time for i, time in enumerate(times) if not math.isnan(time)}
         self.control.computation_times.update(known)
         if not self.measures_times:

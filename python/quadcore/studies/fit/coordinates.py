@@ -108,7 +108,7 @@ class Coordinates:
         return slope
 
     def name(self, x: np.ndarray) -> Dict[str, float]:
-        """Return the values by name, with the products of inertia that follow."""
+        """Return the values by name, with the products of inertia that follow from them."""
         named = dict(zip(self.names, self.decode(x).tolist()))
         for body in self._bodies:
             root = np.exp(x[body.places] / 2)

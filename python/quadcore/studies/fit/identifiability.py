@@ -20,7 +20,7 @@ _INVOLVED = 0.05
 
 
 class Combination(NamedTuple):
-    """Parameters with only an identifiable sum."""
+    """Parameters that are identifiable only as a weighted sum."""
 
     factors: Dict[str, float]
     """Factor of each parameter; the first is 1."""

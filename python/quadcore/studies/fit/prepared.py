@@ -156,7 +156,7 @@ def check_copies(fitted: List[PreparedFlight], judged: List[PreparedFlight]) -> 
 
 
 def _digest(recording: Recording) -> set:
-    """Digest rows without their times, for copies may have other ones."""
+    """Digest rows without their times, which may differ in a copy."""
     rows = set()
     for name in ("position", "rates", "acceleration"):
         if name in recording.quantities:
@@ -167,7 +167,7 @@ def _digest(recording: Recording) -> set:
 
 
 def find_span(recording: Recording) -> Tuple[float, float]:
-    """Find the time in the air: rotors turn and, if known, the height is not the lowest.
+    """Find the time in the air: rotors turn, and the height, if known, is not the lowest.
 
     Raises
     ------

@@ -293,7 +293,7 @@ def _may_be_random(outcome: QuadcoreError) -> bool:
 
 
 def _collect(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Union[Row, int]]:
-    """Give the rows of a task; after a worker died, the numbers of the rows instead."""
+    """Return the rows of a task, or their numbers if the worker died."""
     try:
         yield from future.result()
         return

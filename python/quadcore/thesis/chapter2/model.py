@@ -107,7 +107,7 @@ class MathematicalModel:
         Returns
         -------
         Log
-            Log as of an engine, without wrenches.
+            Log like that of an engine, without wrenches.
 
         Raises
         ------

@@ -191,7 +191,7 @@ class Experiment:
 
 
 def align_to_steps(commands: np.ndarray, dt: float) -> np.ndarray:
-    """Move each row to the first step that it affects; of several rows the last one counts."""
+    """Move each row to the first step that it affects; of several rows the last one applies."""
     steps = np.ceil((commands[:, 0] - 1e-9) / dt)
     steps[steps < 0] = 0
     last = np.append(np.diff(steps) > 0, True)
