@@ -26,7 +26,7 @@ from quadcore.cli import main
             "toy.urdf --vary engine=eigne",
             "vary engine: 'eigne' does not exist. Did you mean 'eigen'?",
         ),
-        ("toy.urdf --vary world=nope", "nope: neither a file nor a shipped world"),
+        ("toy.urdf --vary world=nope", "nope: neither a file nor a built-in world"),
         ("toy.urdf --vary motor.kp=", "motor.kp: no values are given"),
         ("toy.urdf --vary motor.kp=1:2:0", "the range '1:2:0' is empty"),
         ("toy.urdf --vary motor.kp=1:x:3", "'1:x:3' is not a range"),

@@ -402,7 +402,7 @@ def test_the_command_line_writes_one(tmp_path):
     variables = fmpy.read_model_description(str(path)).modelVariables
     assert [v.start for v in variables if v.name == "odometry.rate"] == ["100"]
     assert "Name a file that ends in .fmu" in run_refused("export-fmu", "quadrotor", "-o", "x.zip")
-    assert "nor a shipped model" in run_refused(
+    assert "nor a built-in model" in run_refused(
         "export-fmu", "nothing", "-o", str(tmp_path / "y.fmu")
     )
     assert not (tmp_path / "y.fmu").exists()

@@ -222,7 +222,7 @@ def test_other_commands_motors_and_models_can_be_flown(tmp_path):
         (["--duration", "1", "--log-every", "1001"], "the flight has 1000 steps"),
         (["--motors", "electric"], "--motors: invalid choice: 'electric'"),
         (["--out", "late.csv"], "late.csv: cannot be made"),
-        (["nowhere.urdf"], "nowhere.urdf: neither a file nor a shipped model"),
+        (["nowhere.urdf"], "nowhere.urdf: neither a file nor a built-in model"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_2(arguments, says, tmp_path, monkeypatch, capsys):

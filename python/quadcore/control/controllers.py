@@ -42,7 +42,7 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
         (.yaml); or your own controller as ``FILE.py[:NAME]`` or ``MODULE:NAME``, also with
         ``:KEY=VALUE,...``.
     vehicle : str, optional
-        Name of the robot in its URDF. The gains that are shipped for it become the defaults.
+        Name of the robot in its URDF. The built-in gains for it become the defaults.
     values : mapping of str to float, optional
         Rate, delay and parameters, which replace those of the text.
 

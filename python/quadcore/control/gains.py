@@ -2,7 +2,7 @@
 
 A gains file is a mapping in YAML with ``law`` (the name of the controller), ``vehicle``, ``rate``
 [1/s], ``delay`` [s], ``parameters`` by name and ``history``, which is for people. Only ``law`` is
-required. The shipped files are ``config/gains/VEHICLE/LAW.yaml``, where VEHICLE is the name of the
+required. The built-in files are ``config/gains/VEHICLE/LAW.yaml``, where VEHICLE is the name of the
 robot in its URDF.
 """
 
@@ -117,7 +117,7 @@ def read_controller(path: Union[str, Path]) -> BuiltInController:
 
 
 def make_for_vehicle(name: str, vehicle: str) -> BuiltInController:
-    """Make a controller with the gains that are shipped for a vehicle, or else the defaults.
+    """Make a controller with the built-in gains of a vehicle, or else the defaults.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def make_for_vehicle(name: str, vehicle: str) -> BuiltInController:
 
 
 def find_shipped(name: str, vehicle: str) -> Optional[Path]:
-    """Return the path of the gains that are shipped for a vehicle, or None."""
+    """Return the path of the built-in gains of a vehicle, or None."""
     folder = resources.find_root() / "config" / "gains"
     path = folder / vehicle / f"{name}.yaml"
     # A name may contain no path.

@@ -1,1 +1,1 @@
-"""Models and worlds: files, xacro, XML, overrides and shipped resources."""
+"""Models and worlds: files, xacro, XML, overrides and built-in resources."""

@@ -1,4 +1,4 @@
-"""Reading models and worlds from files or shipped names."""
+"""Reading models and worlds from files or built-in names."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def read_model(
     Parameters
     ----------
     model : str or path, default "quadrotor"
-        URDF or xacro file, or name of a shipped model.
+        URDF or xacro file, or name of a built-in model.
     xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
     ignore : sequence of str, default ()
@@ -59,7 +59,7 @@ def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ())
     Parameters
     ----------
     world : str or path, optional
-        World file, or name of a shipped world. Default: empty.world.
+        World file, or name of a built-in world. Default: empty.world.
     ignore : sequence of str, default ()
         As for `read_model`.
 
@@ -115,7 +115,7 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
     Parameters
     ----------
     model
-        URDF file, xacro file (``.xacro`` or ``.gazebo``), or name of a shipped model.
+        URDF file, xacro file (``.xacro`` or ``.gazebo``), or name of a built-in model.
     xacro_args
         Arguments of the xacro file, by name.
 
@@ -189,7 +189,7 @@ def _find(kind: str, name: str, folder: str) -> Path:
         check_regular(path)
     near, known = suggest(name, list(by_name)), ", ".join(shipped) or "none"
     raise InputError(
-        f"{name}: neither a file nor a shipped {kind}.{near} Name a file, or one of {known}."
+        f"{name}: neither a file nor a built-in {kind}.{near} Name a file, or one of {known}."
     )
 
 

@@ -1,4 +1,4 @@
-"""Paths of the shipped models, worlds and settings."""
+"""Paths of the built-in models, worlds and settings."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def find_root() -> Path:
 
 
 def list_shipped(folder: str) -> dict[str, Path]:
-    """Return the files of a shipped folder by name without suffixes, such as "quadrotor"."""
+    """Return the files of a built-in folder by name without suffixes, such as "quadrotor"."""
     return {path.name.split(".")[0]: path for path in sorted((find_root() / folder).glob("*.*"))}
 
 

@@ -145,7 +145,7 @@ class FlightPlan:
         commands
             As for `Simulation.run`; a file is read at once.
         scenario
-            Disturbances and faults: a file, or the name of a shipped scenario.
+            Disturbances and faults: a file, or the name of a built-in scenario.
         wind
             Velocity of a constant wind, world axes, m/s.
         **others
@@ -180,7 +180,7 @@ class FlightPlan:
         Parameters
         ----------
         scenario : path, str or Scenario, optional
-            File, name of a shipped scenario, or scenario. Default: none.
+            File, name of a built-in scenario, or scenario. Default: none.
 
         Raises
         ------

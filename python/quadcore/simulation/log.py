@@ -67,8 +67,8 @@ class Log(Trajectory):
             are a ULog, a Crazyflie micro-SD log, a blackbox log, a CSV file or a bag with other
             columns; also compressed by gzip.
         mapping : str or path, optional
-            Description of the columns of a recording: a YAML file or a shipped name. Default: the
-            shipped mapping that fits.
+            Description of the columns of a recording: a YAML file or a built-in name. Default: the
+            built-in mapping that fits.
 
         Raises
         ------

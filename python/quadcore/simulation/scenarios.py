@@ -1,8 +1,8 @@
 """Scenarios: disturbances, faults and payload events of a flight, in YAML.
 
 A scenario file is a mapping with ``plugins`` and ``events``. ``plugins`` contains tags by the name
-of the plugin; plugins that the model does not have are added. `KINDS` lists the events. The shipped
-files are ``config/scenarios/NAME.yaml``.
+of the plugin; plugins that the model does not have are added. `KINDS` lists the events. The
+built-in files are ``config/scenarios/NAME.yaml``.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Scenario:
     Parameters
     ----------
     path : str or path
-        File, or name of a shipped scenario.
+        File, or name of a built-in scenario.
 
     Attributes
     ----------
@@ -191,8 +191,8 @@ def _find(name: str) -> Path:
         check_regular(Path(name))
     names = [NONE, *known]
     raise InputError(
-        f"{name}: neither a file nor a shipped scenario.{suggest(name, names)} Name a file, or one "
-        f"of {', '.join(names)}."
+        f"{name}: neither a file nor a built-in scenario.{suggest(name, names)} Name a file, or "
+        f"one of {', '.join(names)}."
     )
 
 

@@ -37,11 +37,11 @@ class Simulation(_core.Simulation):
     Parameters
     ----------
     model : str, path or Model, default "quadrotor"
-        URDF or xacro file, name of a shipped model, or a model that `read_model` returned.
+        URDF or xacro file, name of a built-in model, or a model that `read_model` returned.
     engine : {"gazebo11", "ode", "eigen"}, default "gazebo11"
         Engine; `quadcore.engines()` describes each.
     world : str, path or World, optional
-        World file, name of a shipped world, or a world that `read_world` returned.
+        World file, name of a built-in world, or a world that `read_world` returned.
         Default: empty.world.
     dt : float, optional
         Step, s. Default: max_step_size of the world.
@@ -226,7 +226,7 @@ class Simulation(_core.Simulation):
             Names of topics to log in `Log.topics`.
         controller : name, object or callable, optional
             Controller, instead of `commands`. The name of a built-in controller selects the gains
-            that are shipped for the vehicle, or else the defaults. Any other controller is called
+            that are built in for the vehicle, or else the defaults. Any other controller is called
             as controller(t, state, reference) and returns n rotor speeds (rad/s); see
             `Controller`. `quadcore.controllers.parse` reads texts with parameters.
         reference : name or callable, optional

@@ -41,7 +41,7 @@ def read_recording(path: Path, mapping: Union[str, Path, None] = None) -> Record
     path
         ULog, Crazyflie micro-SD log, blackbox log, bag or CSV file; also compressed by gzip.
     mapping
-        File of a mapping or a shipped name (default: the shipped mapping that fits).
+        File of a mapping or a built-in name (default: the built-in mapping that fits).
 
     Raises
     ------
@@ -57,8 +57,8 @@ def read_recording(path: Path, mapping: Union[str, Path, None] = None) -> Record
         given = _find_mapping(read_header(path, head))
     if given is None:
         raise InputError(
-            f"{path}: no shipped mapping fits ({', '.join(list_mappings())}). Describe the columns "
-            "in a file, and give it with --mapping FILE.yaml."
+            f"{path}: no built-in mapping fits ({', '.join(list_mappings())}). Describe the "
+            "columns in a file, and give it with --mapping FILE.yaml."
         )
     known = read_mapping(given)
     if known.format != kind:
@@ -78,7 +78,7 @@ def _find_format(head: bytes) -> str:
 
 
 def _find_mapping(header: Sequence[str]) -> Optional[str]:
-    """Return the first shipped mapping of CSV files whose columns are all in the header."""
+    """Return the first built-in mapping of CSV files whose columns are all in the header."""
     for name in list_mappings():
         known = read_mapping(name)
         if known.format == "csv" and {known.time, *known.list_columns()} <= set(header):

@@ -96,12 +96,12 @@ class LogMapping(NamedTuple):
 
 
 def list_mappings() -> List[str]:
-    """List the names of the shipped mappings."""
+    """List the names of the built-in mappings."""
     return sorted(path.stem for path in _FOLDER.glob("*.yaml"))
 
 
 def read_mapping(given: Union[str, Path]) -> LogMapping:
-    """Read a mapping: a file, or a shipped name.
+    """Read a mapping: a file, or a built-in name.
 
     Raises
     ------

@@ -208,7 +208,7 @@ class _Tags(Dict[str, str]):
     def __missing__(self, tag: str) -> str:
         raise InputError(
             f"plugin '{self._plugin}' has no tag <{tag}>, which the mathematical model needs. Use "
-            "the shipped plugins."
+            "the built-in plugins."
         )
 
 
