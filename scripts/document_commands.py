@@ -126,6 +126,11 @@ EXAMPLES = {
         "It prints `serving 127.0.0.1:5555` and waits for a client. See [serve](../serve.md).",
         lines=0,
     ),
+    "autopilot": Example(
+        "quadcore autopilot list",
+        "`quadcore autopilot check betaflight.yaml --model iris` checks a stack on a bench. "
+        "See [autopilots](../autopilots.md).",
+    ),
     "export-fmu": Example(
         "quadcore export-fmu quadrotor --engine eigen -o quadrotor.fmu",
         "See [export an FMU](../fmu.md).",

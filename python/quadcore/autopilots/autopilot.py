@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Sequence
+from typing import Any, Callable, List, Sequence
 
 import numpy as np
 
@@ -106,6 +106,16 @@ class Autopilot:
             Value of the reference; None before the flight, or if there is no reference.
         """
         raise NotImplementedError
+
+    def ask(self, tick: Callable[[], object]) -> Any:
+        """Connect for questions, as `check_autopilot` needs; see `bench.Questions`.
+
+        Parameters
+        ----------
+        tick : callable
+            Lets the autopilot compute one period, for stacks that answer from their main loop.
+        """
+        raise InputError("This autopilot answers no questions. Check it in a flight.")
 
     def close(self) -> None:
         """End the program, and remove its files; called after every flight."""

@@ -1,4 +1,4 @@
-"""Strict lockstep with a program whose clock a preloaded library controls."""
+"""Strict lockstep: a preloaded library controls the clock of the program."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _LOOK = 256  # ticks between two looks at the messages of the program
 class StrictExchange(Exchange):
     """Exchange in which the clock of the program stands still between two ticks.
 
-    ``cpp/lockstep/preload.cpp`` is preloaded into the program, whose main thread waits at a horizon
-    of time. In each tick, the program first handles the packets. Then the horizon moves by one
-    period, and the program computes up to there. If its loop is late and has sent no outputs by
-    then, the horizon moves on in pieces of 50 us, up to 20 ms. Betaflight scales its clock by the
-    times in the packets, so that it follows the simulation all the same.
+    The library ``cpp/lockstep/preload.cpp`` is preloaded into the program. The main thread of the
+    program waits at a horizon of time. In each tick, the program first handles the packets. Then
+    the horizon moves by one period, and the program computes up to there. If its loop is late and
+    has sent no outputs by then, the horizon moves on in pieces of 50 us, up to 20 ms. Betaflight
+    scales its clock by the times in the packets, so that it follows the simulation all the same.
 
     Parameters
     ----------

@@ -16,6 +16,7 @@ from ..simulation.engines import ENGINE, STUDY_ENGINE
 from ..support import interrupts
 from ..support.output_files import printable_name
 from . import (
+    autopilot,
     benchmark,
     compare,
     completion,
@@ -56,6 +57,7 @@ _COMMANDS = (
     predict,
     convert,
     serve,
+    autopilot,
     export_fmu,
     list_names,
     examples,

@@ -18,6 +18,7 @@ from ..rotor_map import Place
 from ..sticks import StickPilot, Sticks
 from ..strict import StrictExchange, describe_preload
 from . import frames
+from .msp import Msp
 from .packets import RAW_PORT, Ports, pack_radio, pack_state, read_motors
 from .parameters import COMMANDS, DEFAULTS, IDLE, MAX_ANGLE, MAX_YAW_RATE, write_parameters
 
@@ -50,8 +51,8 @@ class Betaflight(Autopilot):
         Duration of the phase before the flight, s. Betaflight arms 1.5 s before its end.
     lockstep : {"strict", "plain"}, default "strict"
         "strict" preloads a library that controls the clock of the program: flights are
-        bit-identical and several may run at once. "plain" exchanges packets with a program whose
-        clock runs on.
+        bit-identical and several may run at once. "plain" exchanges packets with a program on
+        its own clock.
     motor_curve, rotors, imu
         As for `Autopilot`.
     where : mapping of str to str, default {}
@@ -148,6 +149,10 @@ class Betaflight(Autopilot):
         if reference is None:
             raise InputError("The pilot of an autopilot needs a reference. Add --reference hover.")
         return self._pilot.fly(state, reference)
+
+    def ask(self, tick: Callable[[], object]) -> Msp:
+        """Connect to Betaflight's MSP port."""
+        return Msp(self.ports.msp, tick)
 
     def close(self) -> None:
         """End the program, and remove its folder."""

@@ -1,0 +1,81 @@
+"""``quadcore autopilot``: list the bridges to autopilots, or check one on a bench."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from .._core import InputError
+from ..model import resources
+from ..studies.options import VEHICLE
+from . import options, terminal
+from .parser import add_command, complete_from, find_group
+
+_ACTIONS = ("list", "check")
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = add_command(
+        commands,
+        "autopilot",
+        "List the bridges to autopilots, or check an autopilot on a bench.",
+        run_action,
+        """
+        quadcore autopilot list
+        quadcore autopilot check betaflight.yaml --model iris
+        """,
+    )
+    parser.add_argument(
+        "what", metavar="ACTION", choices=_ACTIONS, help="list: the bridges; check: tilt a vehicle "
+        "on a bench, turn each motor, and name what is wrong"
+    )  # fmt: skip
+    parser.add_argument("file", metavar="FILE.yaml", nargs="?", help="stack file to check")
+    model = find_group(parser, VEHICLE).add_argument(
+        "--model", metavar="MODEL", default="iris", help=f"{options.MODEL} (default: iris)"
+    )
+    complete_from(model, list(resources.list_shipped("urdf")))
+    options.add_options(parser, *options.CHANGES)
+
+
+def run_action(arguments: argparse.Namespace) -> None:
+    """List or check."""
+    if arguments.what == "list":
+        if arguments.file is not None:
+            raise InputError(f"autopilot list takes no file. Leave out {arguments.file}.")
+        _print_stacks()
+    elif arguments.file is None:
+        raise InputError("autopilot check needs a stack file. Add FILE.yaml.")
+    else:
+        _check(arguments)
+
+
+def _print_stacks() -> None:
+    from ..autopilots.stacks import STACKS
+
+    table = terminal.make_table("", "", show_header=False)
+    for name, stack in STACKS.items():
+        table.add_row(name, stack.summary)
+    terminal.make_console().print(table)
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Print the map of the rotors and what is wrong."""
+    from ..autopilots.check import check_autopilot
+    from ..autopilots.stacks import read_autopilot
+    from ..simulation.simulation import Simulation
+    from .reading import read_model_arguments
+
+    autopilot = read_autopilot(arguments.file)
+    simulation = Simulation(
+        engine="eigen", dt=1 / autopilot.rate, **read_model_arguments(arguments)
+    )
+    problems = check_autopilot(autopilot, simulation)
+    for channel in autopilot.channels:
+        print(f"motor {channel}")
+    for problem in problems:
+        terminal.print_message(f"problem: {problem}")
+    if problems:
+        count = f"{len(problems)} problem{'s' if len(problems) > 1 else ''}"
+        raise InputError(f"{arguments.file}: {count}. Correct the stack or the model.")
+    print("Signs of the sensors, order and spin of the motors are right.")
