@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Dict, List, Mapping, NamedTuple, Sequence, Tuple
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -13,6 +13,7 @@ _PRODUCTS = ("ixy", "ixz", "iyz")
 _PAIRS = ((0, 1), (0, 2), (1, 2))
 _THINNEST, _LARGEST = 1e-3, 1e2
 """Bounds of the second moment of a body along an axis, relative to the mean of the start."""
+_STEP = 1e-5  # of a coordinate, for derivatives
 _SPREAD = 1.5
 """Standard deviation of the prior of the logarithms: a factor of 4.5, against runaway search."""
 
@@ -26,22 +27,31 @@ class _Body(NamedTuple):
         Name.
     places : list of int
         Places of ixx, iyy and izz among the parameters.
-    correlation : ndarray (3, 3)
-        Second moments of the mass divided by their square roots on the diagonal.
+    products : list of int or None
+        Places of ixy, ixz and iyz among the parameters; None if one is not free.
+    fixed : ndarray (3,)
+        Values of ixy, ixz and iyz that are not free.
     """
 
     link: str
     places: List[int]
-    correlation: np.ndarray
+    products: List[Optional[int]]
+    fixed: np.ndarray
+
+    def find_products(self, values: np.ndarray) -> np.ndarray:
+        """Return ixy, ixz and iyz."""
+        pairs = zip(self.products, self.fixed)
+        return np.array([fixed if k is None else values[k] for k, fixed in pairs])
 
 
 class Coordinates:
     """Free parameters as numbers near 1, and logarithms for moments of inertia.
 
-    If ixx, iyy and izz of a link are free, their coordinates are logarithms of the second moments
-    of its mass, S = tr(I)/2 - I on the diagonal. The products of inertia keep the correlations of
-    S. So S is positive definite, and each point is a body that can exist (C. Rucker and P. M.
-    Wensing, "Smooth parameterization of rigid-body inertia", IEEE RA-L 7, 2022).
+    If ixx, iyy and izz of a link are free, their coordinates are logarithms of the squared diagonal
+    of L. Here S = L L^T = tr(I)/2 - I are the second moments of its mass. The products of
+    inertia give the rest of L. So S is positive definite, and each point is a body that can exist
+    (log-Cholesky; C. Rucker and P. M. Wensing, "Smooth parameterization of rigid-body inertia",
+    IEEE RA-L 7, 2022).
 
     Parameters
     ----------
@@ -72,66 +82,75 @@ class Coordinates:
     ) -> None:
         self.names, self.sizes = list(names), np.asarray(sizes, float)
         self._bodies = [
-            _make_body(link, places, start[places], products)
+            _make_body(link, places, self.names, products)
             for link, places in _find_links(self.names)
         ]
+        for body in self._bodies:
+            second = _to_second_moments(start[body.places], body.find_products(start))
+            if np.linalg.eigvalsh(second)[0] <= 0:
+                raise InputError(
+                    f"link {body.link}: no body has its moments of inertia. Correct the model."
+                )
         self.low, self.high = (limits / self.sizes[:, None]).T
         self.prior = np.zeros(len(names))
         """Inverse standard deviation of the prior of each coordinate around its start."""
         for body in self._bodies:
-            second = _to_second_moments(start[body.places])
-            self.low[body.places] = np.log(_THINNEST * second.mean())
-            self.high[body.places] = np.log(_LARGEST * second.mean())
+            mean = start[body.places].sum() / 6
+            self.low[body.places] = np.log(_THINNEST * mean)
+            self.high[body.places] = np.log(_LARGEST * mean)
             self.prior[body.places] = 1 / _SPREAD
 
     def encode(self, values: np.ndarray) -> np.ndarray:
         """Return the coordinates of values."""
         x = np.asarray(values / self.sizes, float)
         for body in self._bodies:
-            x[body.places] = np.log(_to_second_moments(values[body.places]))
+            second = _to_second_moments(values[body.places], body.find_products(values))
+            x[body.places] = 2 * np.log(np.diag(np.linalg.cholesky(second)))
         return x
 
     def decode(self, x: np.ndarray) -> np.ndarray:
         """Return the values at coordinates."""
         values = np.asarray(x * self.sizes, float)
         for body in self._bodies:
-            second = np.exp(x[body.places])
+            second = _compose(x[body.places], body.find_products(values))
             values[body.places] = second.sum() - second
         return values
 
     def decode_derivative(self, x: np.ndarray) -> np.ndarray:
         """Return the derivative of the values by the coordinates, shape (names, names)."""
-        slope = np.diag(self.sizes)
-        for body in self._bodies:
-            second = np.exp(x[body.places])
-            slope[np.ix_(body.places, body.places)] = (1 - np.eye(3)) * second
-        return slope
+        steps = _STEP * np.eye(len(x))
+        changes = [self.decode(x + step) - self.decode(x - step) for step in steps]
+        return np.stack(changes, axis=1) / (2 * _STEP)
 
     def name(self, x: np.ndarray) -> Dict[str, float]:
-        """Return the values by name, with the products of inertia that follow from them."""
-        named = dict(zip(self.names, self.decode(x).tolist()))
-        for body in self._bodies:
-            root = np.exp(x[body.places] / 2)
-            for product, (i, j) in zip(_PRODUCTS, _PAIRS):
-                named[f"{body.link}.{product}"] = float(-body.correlation[i, j] * root[i] * root[j])
-        return named
+        """Return the values by name."""
+        return dict(zip(self.names, self.decode(x).tolist()))
 
 
 def _make_body(
-    link: str, places: List[int], moments: np.ndarray, products: Mapping[str, float]
+    link: str, places: List[int], names: Sequence[str], products: Mapping[str, float]
 ) -> _Body:
-    second = np.diag(_to_second_moments(moments))
-    for product, (i, j) in zip(_PRODUCTS, _PAIRS):
-        second[i, j] = second[j, i] = -products.get(f"{link}.{product}", 0.0)
-    if np.linalg.eigvalsh(second)[0] <= 0:
-        raise InputError(f"link {link}: no body has its moments of inertia. Correct the model.")
-    root = np.sqrt(np.diag(second))
-    return _Body(link, places, second / np.outer(root, root))
+    full = [f"{link}.{product}" for product in _PRODUCTS]
+    of_products = [names.index(name) if name in names else None for name in full]
+    fixed = np.array([products.get(name, 0.0) for name in full])
+    return _Body(link, places, of_products, fixed)
 
 
-def _to_second_moments(moments: np.ndarray) -> np.ndarray:
-    second: np.ndarray = moments.sum() / 2 - moments
+def _to_second_moments(moments: np.ndarray, products: np.ndarray) -> np.ndarray:
+    """Return S = tr(I)/2 - I, shape (3, 3)."""
+    second = np.diag(moments.sum() / 2 - moments)
+    for product, (i, j) in zip(products, _PAIRS):
+        second[i, j] = second[j, i] = -product
     return second
+
+
+def _compose(logarithms: np.ndarray, products: np.ndarray) -> np.ndarray:
+    """Return the diagonal of S from that of L and the products of inertia."""
+    one, two, three = np.exp(logarithms)  # squares of the diagonal of L
+    s12, s13, s23 = -products
+    l21, l31 = s12**2 / one, s13**2 / one  # squares
+    l32 = (s23 - s12 * s13 / one) ** 2 / two
+    return np.array([one, two + l21, three + l31 + l32])
 
 
 def _find_links(names: Sequence[str]) -> List[Tuple[str, List[int]]]:

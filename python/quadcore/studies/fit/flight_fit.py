@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -10,18 +10,23 @@ from ..._core import FlightError
 from ...model.overrides import list_link_values
 from .coordinates import Coordinates
 from .fitted_model import FittedModel
-from .inputs import INPUT_BOUNDS, INPUTS, guess_speed, smooth_rotors
+from .inputs import INPUT_BOUNDS, INPUTS, guess_speed
+from .instruments import compute_deviations, estimate
 from .predictor import Predictor
-from .prepared import PreparedFlight
+from .prepared import PreparedFlight, split_samples
 from .problem import Parameter
 from .windows import Windows, compute_errors, make_windows, predict_constant
 
 _STEP = 1e-4  # of a coordinate, for derivatives
 _ROUNDS = 25
 _PRODUCTS = (".ixy", ".ixz", ".iyz")
+_NODES_OF_HALF = 2
+_PRIOR, _TORQUE_PRIOR = 3.0, 1e3
+"""Standard deviations of weak priors: coordinates have sizes near 1; 10 rad/s^2 for torques."""
 _FAR = 30.0
 """Weighted error of a prediction that failed."""
-_DELAYS = (0.0, 0.12)  # s
+_LONGEST = 0.12
+"""Maximum delay, s. Measured rotor speeds may be late, and have negative delays."""
 _DELAY_SIZE = 0.01  # s
 Progress = Callable[[int, int], None]
 
@@ -61,10 +66,16 @@ class Search:
         Free parameters.
     fixed
         Values of other parameters.
+    weights
+        Weights of the errors (default: the inverse RMS errors of constant velocity and rates).
     """
 
     def __init__(
-        self, predictor: Predictor, coordinates: Coordinates, fixed: Mapping[str, float]
+        self,
+        predictor: Predictor,
+        coordinates: Coordinates,
+        fixed: Mapping[str, float],
+        weights: Optional[Mapping[str, np.ndarray]] = None,
     ) -> None:
         self.predictor, self.coordinates, self._fixed = predictor, coordinates, dict(fixed)
         windows = predictor.windows
@@ -72,8 +83,15 @@ class Search:
         self.trim_sizes = np.ones(len(predictor.trim))
         self.trim_sizes[0] = _DELAY_SIZE
         self.trim_sizes[2:] = 1e-2 * np.max(np.diag(predictor.fitted.simulation.inertia))
-        constant = compute_errors(windows, predict_constant(windows))
-        self._weights = {n: 1 / np.sqrt(np.mean(e**2, axis=(0, 2))) for n, e in constant.items()}
+        if weights is None:
+            constant = compute_errors(windows, predict_constant(windows))
+            weights = {n: 1 / np.sqrt(np.mean(e**2, axis=(0, 2))) for n, e in constant.items()}
+        self._weights = weights
+
+    def replace_windows(self, windows: Windows) -> Search:
+        """Return a search with other windows of the same flights."""
+        predictor = Predictor(self.predictor.fitted, windows)
+        return Search(predictor, self.coordinates, self._fixed, self._weights)
 
     @property
     def parameters(self) -> int:
@@ -106,8 +124,8 @@ class Search:
         [predicted] = self.predictor.predict([self._name(shared)], [trims])
         return self.weigh(predicted)
 
-    def differentiate(self, x: np.ndarray) -> np.ndarray:
-        """Return the derivative, shape (windows, errors, coordinates)."""
+    def linearise(self, x: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        """Return the errors and their derivative, shape (windows, errors, coordinates)."""
         shared, trims = self.split(x)
         values, sets = [self._name(shared)], [trims]
         for k in range(self.parameters):
@@ -126,7 +144,7 @@ class Search:
             own = flight == number
             begin = self.parameters + number * width
             slope[own, :, begin : begin + width] = change[own, :, self.parameters :] / (10 * _STEP)
-        return slope
+        return flown[0], slope
 
     def find(
         self, x: np.ndarray, free: np.ndarray, progress: Optional[Progress] = None
@@ -149,7 +167,7 @@ class Search:
             done += 1
             if progress is not None:
                 progress(min(done, _ROUNDS), _ROUNDS)
-            found = self.differentiate(place(y))[:, :, free]
+            found = self.linearise(place(y))[1][:, :, free]
             return np.vstack([found.reshape(-1, found.shape[2]), prior_rows[:, free]])
 
         def left(y: np.ndarray) -> np.ndarray:
@@ -170,13 +188,24 @@ class Search:
         )
         return place(result.x)
 
+    def find_prior(self, size: int) -> np.ndarray:
+        """Return the standard deviation of the prior of each coordinate around its start."""
+        of_trim = [_PRIOR, _PRIOR, *[_TORQUE_PRIOR] * (len(self.trim_sizes) - 2)]
+        prior = np.tile(of_trim, self._flights)
+        shared = np.full(self.parameters, _PRIOR)
+        is_body = self.coordinates.prior > 0
+        shared[is_body] = 1 / self.coordinates.prior[is_body]
+        return np.concatenate([shared, prior])
+
     def find_bounds(self, size: int) -> Any:
         """Return lower and upper bounds of the coordinates."""
         low, high = np.full(size, -np.inf), np.full(size, np.inf)
         low[: self.parameters] = self.coordinates.low
         high[: self.parameters] = self.coordinates.high
         delays = slice(self.parameters, size, len(self.trim_sizes))
-        low[delays], high[delays] = (np.array(_DELAYS) / self.trim_sizes[0]).tolist()
+        has_rotors = [flight.rotors is not None for flight in self.predictor.windows.flights]
+        low[delays] = np.where(has_rotors, -_LONGEST, 0) / self.trim_sizes[0]
+        high[delays] = _LONGEST / self.trim_sizes[0]
         return low, high
 
 
@@ -205,7 +234,7 @@ def fit_flights(
     FlightError
         If every prediction of the start values fails.
     """
-    windows = make_windows([smooth_rotors(flight) for flight in flights])
+    windows = make_windows(flights)
     predictor = Predictor(fitted, windows)
     weight = 9.81 * fitted.simulation.mass
     begin = guess_speed(windows.flights, predictor.rotors, weight)
@@ -226,53 +255,17 @@ def fit_flights(
     for k, name in enumerate(names):
         free[k] = name not in INPUTS or name in free_inputs
     _fix_speed(search, free, [has and i > 0 for i, has in enumerate(_list_scaled(windows))])
+    halves, begin_x = [search], x
     x = search.find(x, free, progress)
-    deviations = _compute_deviations(search, x, free)
+    if any(flight.rotors is not None for flight in flights):  # the inputs are noisy
+        halves = [search.replace_windows(half) for half in _split_windows(flights)]
+        x = estimate(halves, begin_x, x, free)
+    deviations = compute_deviations(halves, begin_x, x, free)
     found, trims = search.split(x)
     values = coordinates.name(found)
     units = {p.name: p.unit for p in parameters}
     units.update(INPUTS)
     return FlightFit(values, dict(zip(names, start.tolist())), deviations, units, trims, windows)
-
-
-def _compute_deviations(search: Search, x: np.ndarray, free: np.ndarray) -> Dict[str, float]:
-    """Compute standard deviations by the sandwich estimator, with the windows as clusters.
-
-    The errors of one window depend on each other. The estimator does not assume independence
-    within a window (H. White, "Maximum likelihood estimation of misspecified models", Econometrica
-    50, 1982).
-    """
-    left, slope = search.compute(x), search.differentiate(x)[:, :, free]
-    weight = 1 / (1 + left**2) ** 0.25  # of soft_l1
-    left, slope = left * weight, slope * weight[:, :, None]
-    normal = np.einsum("nek,nel->kl", slope, slope)
-    scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
-    values, vectors = np.linalg.eigh(normal / np.outer(scale, scale))
-    known = values > _UNKNOWN * values.max()
-    inverse = (vectors[:, known] / values[known]) @ vectors[:, known].T / np.outer(scale, scale)
-    score = np.einsum("nek,ne->nk", slope, left)
-    covariance = inverse @ (score.T @ score) @ inverse
-    unknown = (np.abs(vectors[:, ~known]) > _INVOLVED).any(axis=1)
-    low, high = search.find_bounds(len(x))
-    unknown |= ((x - low < _CLOSE) | (high - x < _CLOSE))[free]
-    shared = int(free[: search.parameters].sum())
-    through = search.coordinates.decode_derivative(x[: search.parameters])
-    places = np.flatnonzero(free[: search.parameters])
-    through = through[np.ix_(places, places)]
-    of_values = through @ covariance[:shared, :shared] @ through.T
-    deviations = dict.fromkeys(search.coordinates.names, 0.0)
-    for k, place in enumerate(places):
-        name = search.coordinates.names[place]
-        deviations[name] = float("nan") if unknown[k] else float(np.sqrt(of_values[k, k]))
-    return deviations
-
-
-_INVOLVED = 0.3
-"""Part of a parameter in such a direction from which it is not identifiable itself."""
-_CLOSE = 1e-4
-"""Distance of a coordinate from its bound below which the bound determines it."""
-_UNKNOWN = 1e-7
-"""Eigenvalue, relative to the maximum, below which a direction is not identifiable."""
 
 
 def calibrate_trims(predictor: Predictor, values: Dict[str, float]) -> np.ndarray:
@@ -290,6 +283,14 @@ def calibrate_trims(predictor: Predictor, values: Dict[str, float]) -> np.ndarra
     free = np.ones(len(x), bool)
     _fix_speed(search, free, _list_scaled(predictor.windows))
     return np.asarray(search.split(search.find(x, free))[1])
+
+
+def _split_windows(flights: Sequence[PreparedFlight]) -> List[Windows]:
+    """Make the windows twice: from even and from odd samples."""
+    return [
+        make_windows([split_samples(flight, half) for flight in flights], _NODES_OF_HALF)
+        for half in (0, 1)
+    ]
 
 
 def _list_scaled(windows: Windows) -> List[bool]:

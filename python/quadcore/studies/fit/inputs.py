@@ -7,6 +7,7 @@ from typing import Dict, List, Mapping, Sequence
 import numpy as np
 
 from ..._core import InputError, Rotor
+from ...formats.recordings.series import Series
 from .prepared import PreparedFlight
 from .smoothing import fit_locally
 
@@ -25,6 +26,11 @@ FULL_VOLTAGE = 4.2
 
 _MEMORY = 0.4  # s before a window that count for the speeds at its start
 _STEP = 5e-3  # s
+_DENSE = 2.0
+"""Samples of rotor speeds per tick from which they are averaged."""
+
+TICK = 5e-3
+"""Duration of a command, s: the motions of a vehicle and its motors take longer."""
 
 
 def demand_speeds(
@@ -53,9 +59,9 @@ def demand_speeds(
         raise InputError(
             f"{flight.where}: the recording has {given.values.shape[1]} rotors, the model {rotors}."
         )
-    level = np.stack([np.interp(time, given.time, column) for column in given.values.T], axis=-1)
     if flight.rotors is not None:
-        return np.asarray(np.abs(level))  # measured
+        return _trace_rotors(flight.rotors, time)
+    level = np.stack([np.interp(time, given.time, column) for column in given.values.T], axis=-1)
     speeds: np.ndarray = values["inputs.speed"] * np.clip(level, 0, 1) ** values["inputs.exponent"]
     if flight.battery is not None:
         volts = np.interp(time, flight.battery.time, flight.battery.values[:, 0])
@@ -63,24 +69,47 @@ def demand_speeds(
     return speeds
 
 
-def smooth_rotors(flight: PreparedFlight) -> PreparedFlight:
-    """Smooth measured rotor speeds, the noise of which would bias a fit, and differentiate them."""
-    if flight.rotors is None:
-        return flight
-    series = flight.rotors
-    value, slope = fit_locally(series.time, np.abs(series.values), series.time, 2 * _STEP)
-    return flight._replace(
-        rotors=series._replace(values=value), rotor_slopes=series._replace(values=slope)
-    )
+def _trace_rotors(rotors: Series, time: np.ndarray) -> np.ndarray:
+    """Interpolate measured speeds by a cubic spline, without smoothing, which would bias a fit.
+
+    Samples that are closer than a tick are averaged by local polynomials first.
+    """
+    from scipy.interpolate import CubicSpline
+
+    values = np.abs(rotors.values)
+    if _DENSE * float(np.median(np.diff(rotors.time))) < TICK:
+        values = fit_locally(rotors.time, values, rotors.time, TICK)[0]
+    inside = np.clip(time, rotors.time[0], rotors.time[-1])
+    return np.asarray(np.maximum(CubicSpline(rotors.time, values)(inside), 0))
 
 
-def lead_speeds(flight: PreparedFlight, time: np.ndarray, constants: np.ndarray) -> np.ndarray:
-    """Return the commands that give the measured speeds w: w + tau dw/dt for each rotor, rad/s."""
-    slopes = flight.rotor_slopes
-    assert slopes is not None
-    speeds = demand_speeds(flight, time, {}, len(constants))
-    columns = [np.interp(time, slopes.time, column) for column in slopes.values.T]
-    lead: np.ndarray = np.maximum(speeds + constants * np.stack(columns, axis=-1), 0)
+def lead_speeds(
+    flight: PreparedFlight, start: np.ndarray, ticks: int, constants: np.ndarray
+) -> np.ndarray:
+    """Return the commands that give the measured speeds at the ends of the ticks.
+
+    A motor of the first order goes from w0 to w1 = e w0 + (1 - e) c with e = exp(-tick/tau), which
+    gives the command c.
+
+    Parameters
+    ----------
+    flight
+        Flight with measured rotor speeds.
+    start : ndarray (n,)
+        Times, s.
+    ticks
+        Number of ticks.
+    constants : ndarray (rotors,)
+        Time constants tau, s.
+
+    Returns
+    -------
+    ndarray (n, ticks, rotors)
+    """
+    ends = start[:, None] + TICK * np.arange(ticks + 1)
+    speeds = demand_speeds(flight, ends, {}, len(constants))
+    kept = np.exp(-TICK / np.maximum(np.nan_to_num(constants), 1e-4))
+    lead: np.ndarray = np.maximum((speeds[:, 1:] - kept * speeds[:, :-1]) / (1 - kept), 0)
     return lead
 
 

@@ -10,7 +10,6 @@ from ..._core import FlightError
 from ...simulation.log import Log
 from .fitted_model import FittedModel
 from .flight_fit import calibrate_trims
-from .inputs import smooth_rotors
 from .predictor import Predictor
 from .prepared import PreparedFlight
 from .windows import (
@@ -93,7 +92,7 @@ def judge_models(
     flights
         Prepared flights.
     """
-    windows = make_windows([smooth_rotors(flight) for flight in flights])
+    windows = make_windows(flights)
     early = np.zeros(len(windows.start), bool)
     for number in range(len(windows.flights)):
         own = windows.flight == number

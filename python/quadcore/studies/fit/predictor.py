@@ -12,11 +12,8 @@ from ..._core import Document, Model
 from ...simulation.batch import BatchSimulation, BatchState
 from ...simulation.simulation import Simulation
 from .fitted_model import FittedModel
-from .inputs import INPUTS, demand_speeds, lag_speeds, lead_speeds
+from .inputs import INPUTS, TICK, demand_speeds, lag_speeds, lead_speeds
 from .windows import INSTANTS, Windows
-
-TICK = 5e-3
-"""Duration of a command, s: the motions of a vehicle and its motors take longer."""
 
 _TURN = 2.0
 """Angle of a rotor in a step, rad. Beyond half a turn, a batch steps vehicles one by one."""
@@ -113,7 +110,7 @@ class Predictor:
             own = self.windows.flight == number
             start = self.windows.start[own] - trim[number, 0]
             if flight.rotors is not None:
-                speeds[own] = lead_speeds(flight, start[:, None] + steps, constants)
+                speeds[own] = lead_speeds(flight, start, speeds.shape[1], constants)
                 first[own] = demand_speeds(flight, start, values, len(self.rotors))
                 continue
             factor = trim[number, 1]

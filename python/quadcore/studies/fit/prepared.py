@@ -15,7 +15,7 @@ from ...formats.recordings.series import Series
 from ...simulation.log import Log
 from .alignment import compute_rates, find_lags, find_mount, shift_topics, turn_pose
 from .cleaning import Removal, clean_recording, list_gaps
-from .smoothing import fit_locally
+from .smoothing import NODES, fit_locally
 
 _REACH = 0.04  # s, of the polynomials that give a measured state
 _AIRBORNE = 0.12  # m above the lowest position
@@ -53,8 +53,8 @@ class PreparedFlight(NamedTuple):
         Samples that were left out.
     rows : set of bytes
         Digest of each row, to recognise copies.
-    rotor_slopes : Series, optional
-        Derivatives of the rotor speeds, rad/s^2.
+    are_rates_derived : bool
+        Whether the rates follow from the orientation.
     """
 
     where: str
@@ -72,7 +72,7 @@ class PreparedFlight(NamedTuple):
     tilt: float
     removals: List[Removal]
     rows: set
-    rotor_slopes: Optional[Series] = None
+    are_rates_derived: bool = False
 
     @property
     def has_pose(self) -> bool:
@@ -140,6 +140,7 @@ def prepare_flight(path: Union[str, Path], mapping: Optional[str] = None) -> Pre
         0.0 if mount is None else float(np.degrees(2 * np.arccos(min(1.0, abs(mount[3]))))),
         removals,
         rows,
+        "rates" not in given,
     )
 
 
@@ -202,26 +203,59 @@ def _find_longest(flags: np.ndarray) -> Optional[tuple]:
 
 
 def _join_gaps(recording: Recording, has_pose: bool) -> np.ndarray:
-    names = ["commands" if "commands" in recording.quantities else "rotors"]
+    names = ["rotors" if "rotors" in recording.quantities else "commands"]
     names += ["position", "orientation"] if has_pose else []
     names += ["rates"] if "rates" in recording.quantities else []
     return np.vstack([list_gaps(recording.quantities[name]) for name in names])
 
 
-def sample_state(flight: PreparedFlight, at: np.ndarray) -> Dict[str, np.ndarray]:
+def split_samples(flight: PreparedFlight, half: int) -> PreparedFlight:
+    """Keep every second measured sample: the even (0) or the odd (1) ones.
+
+    The noise of one half is independent of that of the other. Commands are not measured.
+    """
+
+    def keep(series: Optional[Series]) -> Optional[Series]:
+        return None if series is None else Series(series.time[half::2], series.values[half::2])
+
+    orientation = keep(flight.orientation)
+    rates = keep(flight.rates)
+    if flight.are_rates_derived and orientation is not None:
+        rates = compute_rates(orientation)
+    assert rates is not None
+    return flight._replace(
+        position=keep(flight.position),
+        orientation=orientation,
+        rates=rates,
+        rotors=keep(flight.rotors),
+    )
+
+
+def sample_state(
+    flight: PreparedFlight, at: np.ndarray, nodes: int = NODES
+) -> Dict[str, np.ndarray]:
     """Return measured states at some times, by local polynomials.
+
+    Parameters
+    ----------
+    flight
+        Flight.
+    at
+        Times, s.
+    nodes
+        Minimum number of samples on each side of a polynomial.
 
     Returns
     -------
     dict
         ``rates``, and with a pose ``position``, ``orientation`` and ``velocity``.
     """
-    rates, _ = fit_locally(flight.rates.time, flight.rates.values, at, 0.5 * _REACH)
+    rates, _ = fit_locally(flight.rates.time, flight.rates.values, at, 0.5 * _REACH, nodes)
     state = {"rates": rates}
     if flight.position is not None and flight.orientation is not None:
-        place, slope = fit_locally(flight.position.time, flight.position.values, at, _REACH)
+        place, slope = fit_locally(flight.position.time, flight.position.values, at, _REACH, nodes)
         aligned = interpolate_orientation(flight.orientation, flight.orientation.time)
-        q, _ = fit_locally(flight.orientation.time, aligned, at, 0.5 * _REACH)
+        q, _ = fit_locally(flight.orientation.time, aligned, at, 0.5 * _REACH, nodes)
         q /= np.linalg.norm(q, axis=1, keepdims=True)
         state.update(position=place, velocity=slope, orientation=q)
     return state

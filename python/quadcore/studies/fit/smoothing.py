@@ -6,12 +6,12 @@ from typing import Tuple
 
 import numpy as np
 
-_NODES = 4
+NODES = 4
 """Samples on each side of a polynomial."""
 
 
 def fit_locally(
-    time: np.ndarray, values: np.ndarray, at: np.ndarray, reach: float
+    time: np.ndarray, values: np.ndarray, at: np.ndarray, reach: float, nodes: int = NODES
 ) -> Tuple[np.ndarray, np.ndarray]:
     """Fit a cubic polynomial around each time, and return its value and derivative there.
 
@@ -24,14 +24,16 @@ def fit_locally(
     at : ndarray (m,)
         Times of the result, s.
     reach : float
-        Samples up to this distance count, s; at least four on each side.
+        Samples up to this distance count, s.
+    nodes : int
+        Minimum number of samples on each side.
 
     Returns
     -------
     value, derivative : ndarray (m, k)
     """
     step = float(np.median(np.diff(time)))
-    width = max(_NODES, round(reach / step))
+    width = max(nodes, round(reach / step))
     middle = np.clip(np.searchsorted(time, at), width, max(width, len(time) - width - 1))
     rows = np.clip(middle[:, None] + np.arange(-width, width + 1), 0, len(time) - 1)
     offset = (time[rows] - at[:, None]) / (width * step)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..._core import InputError
 from .prepared import PreparedFlight, sample_state
+from .smoothing import NODES
 
 INSTANTS = (0.05, 0.1, 0.15, 0.25, 0.35, 0.5)
 """Times after the start at which predictions are compared, s."""
@@ -54,8 +55,15 @@ class Windows(NamedTuple):
         return Windows(self.flights, self.flight[kept], self.start[kept], states)
 
 
-def make_windows(flights: Sequence[PreparedFlight], every: float = _EVERY) -> Windows:
+def make_windows(flights: Sequence[PreparedFlight], nodes: int = NODES) -> Windows:
     """Make windows that begin at regular times, leaving out those that touch a gap.
+
+    Parameters
+    ----------
+    flights
+        Prepared flights.
+    nodes
+        Minimum number of samples on each side of the polynomials that give measured states.
 
     Raises
     ------
@@ -68,7 +76,7 @@ def make_windows(flights: Sequence[PreparedFlight], every: float = _EVERY) -> Wi
     numbers, starts, parts = [], [], []
     for number, flight in enumerate(flights):
         begin, end = flight.span
-        start = np.arange(begin + _BEFORE, end - INSTANTS[-1], every)
+        start = np.arange(begin + _BEFORE, end - INSTANTS[-1], _EVERY)
         for gap_begin, gap_end in flight.gaps:
             start = start[(start + INSTANTS[-1] < gap_begin) | (start - 0.1 > gap_end)]
         if len(start) < _FEWEST:
@@ -76,7 +84,7 @@ def make_windows(flights: Sequence[PreparedFlight], every: float = _EVERY) -> Wi
                 f"{flight.where}: only {len(start)} windows of {INSTANTS[-1]:g} s remain."
             )
         at = start[:, None] + np.array([0.0, *INSTANTS])
-        sampled = sample_state(flight, at.ravel())
+        sampled = sample_state(flight, at.ravel(), nodes)
         parts.append({name: v.reshape(*at.shape, -1) for name, v in sampled.items()})
         numbers.append(np.full(len(start), number))
         starts.append(start)

@@ -1,0 +1,233 @@
+"""Estimates without the bias of noisy measurements, and their standard deviations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Dict, List, NamedTuple, Sequence, Tuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .flight_fit import Search
+
+_ROUNDS = 12
+_RELEASED = 3
+"""Rounds in which coordinates may leave their bounds again."""
+_STILL = 0.03
+"""Change relative to the deviation at which the search ends."""
+_LONGEST_STEP = 1.5
+"""Maximum change of a coordinate in a round."""
+_BLOCKS = 12
+"""Blocks of windows per fit, if each gets at least `_SHORTEST` windows."""
+_SHORTEST = 4
+"""Windows in a block: 1 s, longer than the time that windows share."""
+_CLOSE = 1e-4
+"""Distance of a coordinate from its bound below which the bound determines it."""
+_UNKNOWN = 1e-9
+"""Eigenvalue, relative to the maximum, below which a direction has no effect."""
+_RELIABLE = 0.2
+"""Part of a squared derivative that is not noise, below which it gives no information."""
+_LEVERAGE = 0.9
+"""Maximum part of a direction that one block may determine."""
+_LEARNT = 0.5
+"""Deviation relative to that of the prior from which a parameter is not identifiable."""
+_VAGUE = 0.4
+"""Deviation of a positive parameter, relative to it, from which it is not identifiable."""
+_POSITIVE = (".ixx", ".iyy", ".izz", ".mass")
+_NORMAL = 1.959964
+"""Quantile of the normal distribution for 95 %."""
+
+
+class _Equations(NamedTuple):
+    """Estimating equations, in coordinates in which the squared derivatives are the unit matrix.
+
+    Attributes
+    ----------
+    moving : ndarray (coordinates,) of bool
+        Coordinates that the equations contain.
+    white : ndarray (moving coordinates, k)
+        Coordinates of the free parameters for each of these.
+    score : ndarray (k,)
+        Derivatives of one half times the errors of the other, summed over the windows.
+    slope : ndarray (k, k)
+        Derivative of the score; 1 without noise, 0 for a direction with noise alone.
+    covariance : ndarray (k, k)
+        Covariance of the score.
+    blocks : int
+        Number of blocks of windows.
+    """
+
+    moving: np.ndarray
+    white: np.ndarray
+    score: np.ndarray
+    slope: np.ndarray
+    covariance: np.ndarray
+    blocks: int
+
+
+def estimate(
+    halves: Sequence[Search], start: np.ndarray, x: np.ndarray, free: np.ndarray
+) -> np.ndarray:
+    """Estimate coordinates from two halves of the samples, without the bias of noisy inputs.
+
+    Least squares are biased if inputs or initial states are noisy, because the derivatives then
+    contain the noise of the errors. The derivatives of one half of the samples are instruments for
+    the errors of the other half, the noise of which is independent (O. Reiersol, "Confluence
+    analysis by means of instrumental sets of variables", 1945; T. Soderstrom, "Errors-in-variables
+    methods in system identification", Automatica 43, 2007). A weak prior keeps directions that the
+    flights do not identify at the start.
+
+    Parameters
+    ----------
+    halves
+        Searches on even and on odd samples.
+    start
+        Start values.
+    x
+        Least squares.
+    free
+        Coordinates to estimate.
+
+    Returns
+    -------
+    ndarray
+        Coordinates; the least squares if the search does not settle.
+    """
+    low, high = halves[0].find_bounds(len(x))
+    prior = halves[0].find_prior(len(x))
+    found = x.copy()
+    for done in range(_ROUNDS):
+        moving = free & ((done < _RELEASED) | _list_inner(found, low, high))
+        step, spread = _solve(_make_equations(halves, found, moving), found - start, prior)
+        after = np.clip(found + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), low, high)
+        moved = np.abs(after - found)[moving]
+        found[moving] = after[moving]
+        if done >= _RELEASED and (moved < _STILL * np.sqrt(np.diag(spread))[moving]).all():
+            return found
+    return x
+
+
+def compute_deviations(
+    halves: Sequence[Search], start: np.ndarray, x: np.ndarray, free: np.ndarray
+) -> Dict[str, float]:
+    """Compute the standard deviation of each parameter; NaN if it is not identifiable.
+
+    The deviations come from a sandwich estimator with blocks of consecutive windows as clusters,
+    for these share samples and model errors. It corrects for the leverage of each block (R. M. Bell
+    and D. F. McCaffrey, Survey Methodology 28, 2002, of the kind of the jackknife). The deviations
+    are scaled so that 1.96 of them are the 95 % range of the t distribution.
+
+    Parameters
+    ----------
+    halves
+        Searches on even and on odd samples, or one search on all.
+    start, free
+        As for `estimate`.
+    x
+        Estimated coordinates.
+    """
+    from scipy.stats import t
+
+    moving = free & _list_inner(x, *halves[0].find_bounds(len(x)))
+    prior = halves[0].find_prior(len(x))
+    equations = _make_equations(halves, x, moving)
+    covariance = _solve(equations, x - start, prior)[1]
+    covariance *= (t.ppf(0.975, equations.blocks - 1) / _NORMAL) ** 2
+    return _name_deviations(halves[0], x, free, covariance, prior)
+
+
+def _list_inner(x: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return which coordinates lie between their bounds."""
+    inner: np.ndarray = (x - low > _CLOSE) & (high - x > _CLOSE)
+    return inner
+
+
+def _make_equations(halves: Sequence[Search], x: np.ndarray, moving: np.ndarray) -> _Equations:
+    blocks = _list_blocks(halves[0].predictor.windows.flight)
+    linear = []
+    for half in halves:
+        errors, slope = half.linearise(x)
+        linear.append((errors, slope[:, :, moving], 1 / np.sqrt(1 + errors**2)))  # soft_l1
+    size = (len(errors), int(moving.sum()))
+    scores, slopes, squares = np.zeros(size), np.zeros((*size, size[1])), np.zeros((*size, size[1]))
+    for (errors, slope, weight), (_, instrument, _) in zip(linear, linear[::-1]):
+        weighted = slope * weight[:, :, None]
+        scores += np.einsum("nek,ne->nk", instrument, errors * weight)
+        slopes += np.swapaxes(instrument, 1, 2) @ weighted
+        squares += np.swapaxes(slope, 1, 2) @ weighted
+    white = _whiten(squares.sum(axis=0))
+    slope = white.T @ slopes.sum(axis=0) @ white
+    covariance = np.zeros_like(slope)
+    for block in blocks:
+        leverage, axes = np.linalg.eigh(white.T @ squares[block].sum(axis=0) @ white)
+        score = axes.T @ (white.T @ scores[block].sum(axis=0))
+        adjusted = axes @ (score / (1 - np.minimum(leverage, _LEVERAGE)))
+        covariance += np.outer(adjusted, adjusted)
+    score = white.T @ scores.sum(axis=0)
+    covariance *= (len(blocks) - 1) / len(blocks)
+    slope = _drop_noise((slope + slope.T) / 2)
+    return _Equations(moving, white, score, slope, covariance, len(blocks))
+
+
+def _drop_noise(slope: np.ndarray) -> np.ndarray:
+    """Set the slope of directions that are hardly more than noise to zero."""
+    reliability, axes = np.linalg.eigh(slope)
+    dropped: np.ndarray = (axes * np.where(reliability > _RELIABLE, reliability, 0)) @ axes.T
+    return dropped
+
+
+def _whiten(squares: np.ndarray) -> np.ndarray:
+    """Return W with W^T squares W = 1, without directions that have no effect."""
+    scale = np.sqrt(np.maximum(np.diag(squares), 1e-300))
+    values, vectors = np.linalg.eigh(squares / np.outer(scale, scale))
+    acts = values > _UNKNOWN * values.max(initial=0)
+    white: np.ndarray = vectors[:, acts] / np.sqrt(values[acts]) / scale[:, None]
+    return white
+
+
+def _solve(
+    equations: _Equations, away: np.ndarray, prior: np.ndarray
+) -> Tuple[np.ndarray, np.ndarray]:
+    """Return the step to the estimate, and the covariance of the estimate.
+
+    The estimate minimises the score, weighted by the inverse of its mean variance, and the distance
+    from the start, weighted by the inverse variance of the prior.
+    """
+    moving, white, score, slope, spread, _ = equations
+    weight = np.diag(prior[moving] ** -2)
+    variance = float(np.trace(spread)) / len(score) + 1e-300
+    effect = slope @ np.linalg.pinv(white)
+    gain = effect.T / variance
+    inverse = np.linalg.inv(gain @ effect + weight)
+    step, covariance = np.zeros(len(away)), np.diag(prior**2)
+    step[moving] = -inverse @ (gain @ score + weight @ away[moving])
+    covariance[np.ix_(moving, moving)] = inverse @ (gain @ spread @ gain.T + weight) @ inverse
+    return step, covariance
+
+
+def _name_deviations(
+    search: Search, x: np.ndarray, free: np.ndarray, covariance: np.ndarray, prior: np.ndarray
+) -> Dict[str, float]:
+    shared = search.parameters
+    through = search.coordinates.decode_derivative(x[:shared])
+    spreads = np.sqrt(np.diag(through @ covariance[:shared, :shared] @ through.T))
+    priors = np.sqrt(np.diag(through @ np.diag(prior[:shared] ** 2) @ through.T))
+    values = search.coordinates.decode(x[:shared])
+    deviations = {}
+    for k, name in enumerate(search.coordinates.names):
+        is_vague = name.endswith(_POSITIVE) and spreads[k] > _VAGUE * values[k]
+        is_unknown = is_vague or spreads[k] > _LEARNT * priors[k]
+        deviations[name] = (float("nan") if is_unknown else float(spreads[k])) if free[k] else 0.0
+    return deviations
+
+
+def _list_blocks(flight: np.ndarray) -> List[np.ndarray]:
+    """Return masks of blocks of consecutive windows, each of one flight."""
+    length = max(_SHORTEST, -(-len(flight) // _BLOCKS))
+    blocks = []
+    for number in np.unique(flight):
+        own = np.flatnonzero(flight == number)
+        for part in np.array_split(own, max(1, round(len(own) / length))):
+            block = np.zeros(len(flight), bool)
+            block[part] = True
+            blocks.append(block)
+    return blocks
