@@ -106,6 +106,8 @@ def show(evaluation: Evaluation, files: list[Path], notes: Sequence[str] = ()) -
     console.print(table)
     if evaluation.margins:
         console.print("", _make_margin_table(evaluation))
+    if evaluation.loops:
+        console.print("", _make_loop_table(evaluation))
     if len(lines) > _ROWS:
         console.print(f"{len(lines) - _ROWS} more combinations")
     for note in [*notes, *list_notes(evaluation)]:
@@ -129,6 +131,16 @@ def _make_margin_table(evaluation: Evaluation) -> Any:
             for names in (("gain_low", "gain_high"), ("box_median", "box_worst"))
         )
         table.add_row(row["controller"], gain, row["delay_margin"] or "-", box)
+    return table
+
+
+def _make_loop_table(evaluation: Evaluation) -> Any:
+    from ..studies.evaluate.loop_table import choose_headings, format_loops
+
+    headings = choose_headings(evaluation.loops)
+    table = terminal.make_table(*headings.values())
+    for row in format_loops(evaluation.loops):
+        table.add_row(*(row[name] for name in headings))
     return table
 
 

@@ -275,12 +275,18 @@ class EvaluateOptions(CriteriaOptions):
         "measured on this machine",
         parse.computation_time, arguments.COMPUTATION_TIME, "none",
     ))  # fmt: skip
+    frequency_response: bool = field(default=False, metadata=_describe(
+        STUDY, "frequency-response", "",
+        "also measure the frequency responses of the loops in hover",
+        kind=arguments.FLAG, without="false",
+    ))  # fmt: skip
 
 
 class EvaluateKeywords(CriteriaKeywords, total=False):
     """`EvaluateOptions` as keyword arguments, for type checkers."""
 
     computation_time: Union[float, str, None]
+    frequency_response: bool
 
 
 @dataclass(frozen=True)

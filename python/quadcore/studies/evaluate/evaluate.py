@@ -44,6 +44,7 @@ from ..options import (
 from ..table import count_outcomes
 from ..time_limit import time_limit
 from ..tracking_metrics import UNITS
+from .loop_responses import measure_loops
 from .margins import MarginSearch
 from .plan import Plan
 from .poles import compute_poles, has_poles
@@ -80,6 +81,9 @@ class Evaluation(NamedTuple):
         Outcome of each flight. Those of the first seed contain a log, for at most 60 combinations.
     units : mapping of str to str
         Unit of each metric, including those that `constraints` and `metrics` add.
+    loops : sequence of dict
+        Row per controller, engine, model and axis with the option `frequency_response`; see
+        `measure_loops`.
     """
 
     table: List[Dict[str, Any]]
@@ -88,6 +92,7 @@ class Evaluation(NamedTuple):
     poles: List[Dict[str, Any]]
     outcomes: Sequence[Outcome]
     units: Mapping[str, str] = UNITS
+    loops: Sequence[Mapping[str, Any]] = ()
 
     @property
     def drawn(self) -> Dict[int, Outcome]:
@@ -169,10 +174,11 @@ def fly_plan(plan: Plan, progress: Optional[Progress] = None, margins: bool = Fa
     poles = _compute_poles(plan)
     try:
         flights.fly(_pick_drawn(plan))
+        loops = measure_loops(plan, poles) if plan.measures_loops else []
     except KeyboardInterrupt as stop:
         stop.evaluation = flights.make_evaluation(poles)  # type: ignore[attr-defined]
         raise
-    return flights.make_evaluation(poles)
+    return flights.make_evaluation(poles)._replace(loops=loops)
 
 
 def fly_outcomes(plan: Plan, progress: Optional[Progress] = None) -> List[Outcome]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, NamedTuple, Sequence
 import numpy as np
 
 from ...simulation.simulation import Simulation
+from .loop_margins import find_margins
 
 if TYPE_CHECKING:
     from ...thesis.chapter2 import Vehicle
@@ -40,15 +41,7 @@ class Loop(NamedTuple):
 
     def find_delay_margin(self) -> float:
         """Return the delay of the demand that makes a stable loop unstable, s."""
-        response = self.compute_response(_FREQUENCIES)
-        sizes, phases = np.log(np.abs(response)), np.unwrap(np.angle(response))
-        delays = [math.inf]
-        for i in np.flatnonzero(sizes[:-1] * sizes[1:] < 0):
-            part = sizes[i] / (sizes[i] - sizes[i + 1])
-            frequency = _FREQUENCIES[i] + part * (_FREQUENCIES[i + 1] - _FREQUENCIES[i])
-            phase = phases[i] + part * (phases[i + 1] - phases[i])
-            delays.append((phase + math.pi) % (2 * math.pi) / frequency)
-        return min(delays)
+        return find_margins(_FREQUENCIES, self.compute_response(_FREQUENCIES)).delay_margin
 
 
 def measure_drag(simulation: Simulation) -> np.ndarray:

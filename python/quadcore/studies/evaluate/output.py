@@ -26,6 +26,7 @@ from .best_controllers import describe_seeds
 from .computation_times import summarise_computation_times
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
+from .loop_table import choose_headings, format_loops, make_plain
 from .margins import BOX, ENDS, format_margin
 from .overview import describe_best, make_overview
 from .paper_tables import make_latex, make_rows
@@ -198,6 +199,7 @@ def _make_content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
         "margins": [_replace_infinity(row) for row in evaluation.margins],
         "searched": {**ENDS, "box": BOX},
         "unsearched": plan.omitted_margins if evaluation.margins else "",
+        **({"loops": list(map(make_plain, evaluation.loops))} if evaluation.loops else {}),
         "poles": [
             {
                 **row,
@@ -263,6 +265,8 @@ def _page_values(
         ],
         "margins": format_margins(evaluation),
         "computation_times": summarise_computation_times(evaluation, plan),
+        "loops": format_loops(evaluation.loops),
+        "loop_headings": choose_headings(evaluation.loops),
         "omitted_margins": plan.omitted_margins,
         "omitted_flights": _describe_omitted_flights(evaluation),
         "causes": list_unstable_axes(evaluation),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from ..measured_flight import Outcome
 from ..tracking_metrics import compute_errors, find_failure_time
 from .evaluate import Evaluation
 from .event_marks import mark_events
+from .loop_plots import draw_loops
 from .margins import RATES
 
 _ROTOR_PANELS = 12  # in one figure
@@ -74,6 +76,11 @@ def draw(
             figures[f"response_{i}"] = _draw_responses(name, flights)
     if any(group["flights"] * (1 - group["failure_rate"]) > 1 for group in evaluation.groups):
         figures["seeds"] = _draw_boxes(evaluation)
+    if any(not row["failure"] for row in evaluation.loops):
+        styles = _number_styles(evaluation)
+        label = partial(_name_curve, evaluation=evaluation)
+        figures["loops"] = draw_loops(evaluation.loops, label, styles, _header_height(list(styles)))
+        _add_legend(figures["loops"], *figures["loops"].axes)
     if evaluation.margins:
         figures["margins"] = _draw_margins(evaluation.margins)
         controllers = [row["controller"] for row in evaluation.table]
@@ -89,7 +96,8 @@ def draw(
 def is_plot(name: str) -> bool:
     """Whether `draw` makes plots with that name."""
     return (
-        re.fullmatch(r"(tracks|errors|rotors|response)_\d+|seeds|margins|rates", name) is not None
+        re.fullmatch(r"(tracks|errors|rotors|response)_\d+|seeds|margins|rates|loops", name)
+        is not None
     )
 
 
