@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, List, Sequence
+import math
+from pathlib import Path
+from typing import Any, Callable, List, Optional, Sequence
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from ..control.vehicle import Vehicle, unwrap
 from .motor_curve import CurveLike, MotorCurve
 from .readings import Readings, Sensors
 from .rotor_map import Channel, Place, check_reaction, map_channels
+from .session import Session
 
 
 class Autopilot:
@@ -47,6 +50,17 @@ class Autopilot:
         Motor curve, from the first reset on.
     period : float
         Time between ticks, s, from the first reset on.
+    record : path, optional
+        File into which the session is recorded; it appears at the end of the flight.
+    session : Session, optional
+        Recorded session that answers instead of the program.
+    words : sequence of str
+        Command line of the flight, which a recorded session contains.
+    log : dict of str to float
+        Outputs, and what else the bridge knows at each tick. The log of a flight has these columns
+        under the topic ``controller``.
+    summary : str
+        Description of the answers of the last flight, with their durations.
     """
 
     pilot_rate = 100.0
@@ -58,6 +72,7 @@ class Autopilot:
     rate: float = 1000.0
     fixed_rate = True
     delay: float = 0.0
+    summary = ""
 
     def __init__(
         self,
@@ -70,6 +85,10 @@ class Autopilot:
         self.motor_curve, self.rotors, self.imu = motor_curve, tuple(rotors), imu
         self.hold = hold
         self.channels: List[Channel] = []
+        self.record: Optional[Path] = None
+        self.session: Optional[Session] = None
+        self.words: Sequence[str] = ()
+        self.log = {f"output{i}": math.nan for i in range(1, len(self.layout) + 1)}
 
     def start(self, vehicle: Vehicle) -> None:
         """Start the program and connect to it.
@@ -130,7 +149,8 @@ class Autopilot:
         self._sensors = Sensors(simulation, self.imu)
         every = max(1, round(1 / (self.pilot_rate * self.period)))
         self._pilot_every, self._ticks = every, 0
-        for k in range(round(self.hold / self.period), 0, -1):
+        held_ticks = 0 if self.session is not None else round(self.hold / self.period)
+        for k in range(held_ticks, 0, -1):
             t = -k * self.period
             self._ask(held.at_rest(t, self._sensors.gravity), None, None)
         self._begin, self._ticks = simulation.time, 0
@@ -170,6 +190,8 @@ class Autopilot:
         outputs = np.asarray(self.tick(readings, self._sticks_held), dtype=float)
         if outputs.shape != (len(self.channels),) or not np.all(np.isfinite(outputs)):
             raise self.fail(readings.time, f"the autopilot answered with outputs {outputs}")
+        for i, output in enumerate(outputs, 1):
+            self.log[f"output{i}"] = float(output)
         return outputs
 
     def fail(self, t: float, reason: str) -> FlightError:

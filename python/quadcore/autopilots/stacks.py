@@ -11,6 +11,7 @@ from ..support.user_code import find_controller
 from .autopilot import Autopilot
 from .betaflight.betaflight import Betaflight
 from .motor_curve import check_pairs
+from .session import Session
 from .stack_file import StackFile, read_stack_file
 
 
@@ -53,6 +54,23 @@ def read_autopilot(path: Union[str, Path]) -> Autopilot:
         values["pilot"] = _find_pilot(read)
     where = {name: read.locate(name) for name in read.lines}
     return STACKS[read.kind].make(**values, where=where)
+
+
+def make_replay(session: Session) -> Autopilot:
+    """Make the controller of a recorded session, which starts no program.
+
+    Raises
+    ------
+    InputError
+        If the session does not describe a flight with one of the stacks.
+    """
+    about = session.about
+    try:
+        made = STACKS[about["autopilot"]].make("", **about["settings"])
+    except (KeyError, TypeError) as error:
+        raise InputError(f"{session.file}: its description is damaged. Record it again.") from error
+    made.session = session
+    return made
 
 
 def _find_program(read: StackFile) -> str:

@@ -68,6 +68,12 @@ def register(commands: Any) -> None:
         type=parse.not_negative,
         help="simulated seconds per second with --live; 0: as fast as possible (default: 1)",
     )
+    find_group(parser, OUTPUT).add_argument(
+        "--record",
+        metavar="FILE",
+        type=Path,
+        help="session of an autopilot to write, for quadcore autopilot replay",
+    )
     options.add_log_topics(parser)
     options.add_wrenches(parser)
     options.add_json(parser)
@@ -86,6 +92,8 @@ def run_flight(arguments: argparse.Namespace) -> None:
 def _run(arguments: argparse.Namespace) -> None:
     out = arguments.out
     plan = reading.make_flight_plan(arguments)
+    if arguments.record is not None:
+        _record_session(plan, arguments)
     simulation = plan.simulation()
     pilot = plan.pilot(simulation)
     columns = list_columns(simulation, plan.topics, pilot)
@@ -169,6 +177,15 @@ def _open_view(
     if not open_browser(view.page.url) or not arguments.quiet:
         terminal.print_message(f"live view: {view.page.url}")
     return view
+
+
+def _record_session(plan: FlightPlan, arguments: argparse.Namespace) -> None:
+    """Let the autopilot record its session."""
+    from ..autopilots.autopilot import Autopilot
+
+    if not isinstance(plan.controller, Autopilot):
+        raise InputError("--record: needs an autopilot. Name its stack file as --controller.")
+    plan.controller.record, plan.controller.words = arguments.record, arguments.words
 
 
 def _choose_pace(arguments: argparse.Namespace) -> float:

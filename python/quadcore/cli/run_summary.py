@@ -70,6 +70,8 @@ def summarize(
             saturated_updates=pilot.saturated,
             updates=pilot.updates,
         )
+        if pilot.summary:
+            result["answers"] = pilot.summary
     return result
 
 
@@ -113,6 +115,7 @@ def _describe_control(result: Dict[str, Any]) -> List[Tuple[str, str]]:
         ("max error", f"{result['max_error']:.4g} m (whole flight){late}"),
         ("RMS error", f"{result['rms_error']:.4g} m"),
         ("saturated updates", f"{result['saturated_updates']} of {result['updates']}"),
+        *([("answers", result["answers"])] if "answers" in result else []),
     ]
 
 

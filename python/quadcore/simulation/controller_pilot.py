@@ -101,6 +101,11 @@ class ControllerPilot(Pilot):
         return self._reported + (0 if self._loop is None else self._loop.saturated)
 
     @property
+    def summary(self) -> str:
+        """What the controller reports of its last flight; "" for most."""
+        return str(getattr(self._controller, "summary", ""))
+
+    @property
     def variation(self) -> Tuple[np.ndarray, np.ndarray]:
         """Total variation over all steps of joint rates (rotors,) and of commands (n,), rad/s."""
         if self._loop is None:

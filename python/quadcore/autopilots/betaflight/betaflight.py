@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import socket
-from typing import Any, Callable, Mapping, Optional, Sequence
+from pathlib import Path
+from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from ..exchange import Exchange, check_free, find_free_port
 from ..program import Program
 from ..readings import Readings
 from ..rotor_map import Place
+from ..session import Recorder, Session
 from ..sticks import StickPilot, Sticks
 from ..strict import StrictExchange, describe_preload
 from . import frames
@@ -23,6 +26,7 @@ from .packets import RAW_PORT, Ports, pack_radio, pack_state, read_motors
 from .parameters import COMMANDS, DEFAULTS, IDLE, MAX_ANGLE, MAX_YAW_RATE, write_parameters
 
 _ARM, _SPIN_UP = 1.5, 0.3  # s before the flight
+_LOGGED = ("roll", "pitch", "yaw", "throttle", "arming_switch", "armed")
 _STILL = (0.0, 0.0, 0.0, 0.0)
 _DISARMED = 0.1  # s without output after which an armed autopilot counts as disarmed
 
@@ -82,8 +86,11 @@ class Betaflight(Autopilot):
         self._where = where or {}
         self._program: Optional[Program] = None
         self._exchange: Optional[Exchange] = None
+        self._recorder: Optional[Recorder] = None
+        self._flight_exchange: Union[Exchange, Recorder, Session, None] = None
+        self.log.update(dict.fromkeys(_LOGGED, math.nan))
+        self._settings = {"hold": hold, **others}
         self._pilot: Optional[StickPilot] = None
-        self.summary = ""
         self._is_strict = lockstep == "strict"
         if lockstep not in ("strict", "plain"):
             raise InputError(
@@ -106,15 +113,26 @@ class Betaflight(Autopilot):
             math.radians(MAX_YAW_RATE),
             IDLE,
         )
-        self._program = Program()
-        (self._start_strict if self._is_strict else self._start_plain)(self._program)
+        if self.session is not None:
+            self.ports = Ports()
+            self.session.rewind()
+            self._flight_exchange = self.session
+        else:
+            self._program = Program()
+            (self._start_strict if self._is_strict else self._start_plain)(self._program)
+            self._flight_exchange = self._exchange
+            if self.record is not None and self._exchange is not None:
+                about = self._describe_session()
+                self._recorder = Recorder(self._exchange, self.record, about)
+                self._flight_exchange = self._recorder
         self._first: Optional[np.ndarray] = None
         self._sticks: Optional[Sticks] = None
         self._off_since: Optional[float] = None
 
     def tick(self, readings: Readings, sticks: Sticks) -> Sequence[float]:
         """Send the radio's channels and the state, and wait for the outputs."""
-        assert self._exchange is not None
+        exchange = self._exchange if readings.time < 0 else self._flight_exchange
+        assert exchange is not None
         if self._first is None:
             self._first = readings.position
         time = readings.time + self.hold
@@ -124,14 +142,16 @@ class Betaflight(Autopilot):
 
         if sticks is not self._sticks:
             self._sticks = sticks
-            self._exchange.send(pack_radio(time, sticks), self.ports.radio, fail)
+            exchange.send(pack_radio(time, sticks), self.ports.radio, fail)
         fields = frames.convert_readings(readings, self._first, frames.Place())
-        answer = self._exchange.ask(pack_state(time, fields), self.ports.state, fail)
+        answer = exchange.ask(pack_state(time, fields), self.ports.state, fail)
         if not answer and self._is_strict and readings.time < 0:  # it is still starting
             return _STILL
         outputs, problem = read_motors(answer)
         if outputs is None:
             raise fail(problem)
+        is_armed = max(outputs) > IDLE / 2
+        self.log.update(zip(_LOGGED, map(float, (*sticks, is_armed))))
         self._check_armed(readings.time, outputs)
         return [max(0.0, min(1.0, output)) for output in outputs]
 
@@ -156,6 +176,9 @@ class Betaflight(Autopilot):
 
     def close(self) -> None:
         """End the program, and remove its folder."""
+        if self._recorder is not None:
+            self._recorder.write()
+            self._recorder = None
         if self._exchange is not None:
             self.summary = self._exchange.summarize()
             self._exchange.close()
@@ -195,20 +218,36 @@ class Betaflight(Autopilot):
         given = self._parameters, self._lines, self._where
         write_parameters(self._program, command, environment, *given)
 
+    def _describe_session(self) -> Dict[str, Any]:
+        if self._own_pilot is not None:
+            raise InputError(
+                "--record: a flight with your own pilot cannot be recorded. Leave out --record."
+            )
+        program = Path(self._command[0])
+        return {
+            "autopilot": "betaflight",
+            "settings": self._settings,
+            "program": program.name,
+            "sha256": hashlib.sha256(program.read_bytes()).hexdigest(),
+            "parameters": self._parameters,
+            "words": list(self.words),
+        }
+
     def _check_armed(self, t: float, outputs: Sequence[float]) -> None:
         """Raise `FlightError` if the autopilot is not armed in flight."""
-        assert self._program is not None and self._sticks is not None
+        assert self._sticks is not None
         if t < 0 or not self._sticks.is_armed or max(outputs) > IDLE / 2:
             self._off_since = None
             return
         if self._off_since is None:
             self._off_since = t
         if t == 0:
-            raise self.fail(t, f"the autopilot did not arm. {self._program.describe_messages()}")
+            raise self.fail(t, f"the autopilot did not arm. {self._quote_messages()}")
         if t - self._off_since >= _DISARMED:
-            raise self.fail(
-                self._off_since, f"the autopilot disarmed. {self._program.describe_messages()}"
-            )
+            raise self.fail(self._off_since, f"the autopilot disarmed. {self._quote_messages()}")
+
+    def _quote_messages(self) -> str:
+        return "" if self._program is None else self._program.describe_messages()
 
 
 def _find_free_ports() -> Ports:

@@ -1,0 +1,149 @@
+"""Recorded sessions: the answers of an autopilot in a flight, and digests of what it was asked.
+
+A session file is compressed with gzip. It has a line of JSON and one record for each answer. A
+record contains the CRC-32 of all packets since the last answer, the length of the answer, and the
+answer.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import struct
+import zlib
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterator, List, Tuple, Union
+
+from .._core import InputError
+from ..support.input_files import LARGEST, open_file
+from ..support.output_files import atomic_write, printable_name
+from .exchange import Exchange
+
+_VERSION = 1
+_RECORD = struct.Struct("<IB")
+
+Fail = Callable[[str], Exception]
+
+
+class Recorder:
+    """Exchange that records what passes through another one.
+
+    Parameters
+    ----------
+    exchange : Exchange
+        Exchange with the program.
+    path : path
+        File to write, which appears when the exchange is closed.
+    about : dict
+        Description of the flight, in plain values.
+    """
+
+    def __init__(self, exchange: Exchange, path: Path, about: Dict[str, Any]) -> None:
+        self._exchange, self._path = exchange, path
+        self._head = json.dumps({"quadcore session": _VERSION, **about}, sort_keys=True)
+        self._records: List[bytes] = []
+        self._digest = 0
+
+    def send(self, packet: bytes, port: int, fail: Fail) -> None:
+        """Send a packet, as `Exchange.send`."""
+        self._digest = zlib.crc32(packet, self._digest)
+        self._exchange.send(packet, port, fail)
+
+    def ask(self, packet: bytes, port: int, fail: Fail) -> bytes:
+        """Ask, as `Exchange.ask`."""
+        answer = self._exchange.ask(packet, port, fail)
+        digest = zlib.crc32(packet, self._digest)
+        self._records.append(_RECORD.pack(digest, len(answer)) + answer)
+        self._digest = 0
+        return answer
+
+    def write(self) -> None:
+        """Write the file."""
+        content = self._head.encode() + b"\n" + b"".join(self._records)
+        with atomic_write(self._path) as stream, gzip.GzipFile(
+            "", "wb", 9, stream, mtime=0
+        ) as compressed:
+            compressed.write(content)
+
+
+class Session:
+    """Recorded session, which answers instead of the program.
+
+    Parameters
+    ----------
+    path : str or path
+        Session file.
+
+    Attributes
+    ----------
+    about : dict
+        Description of the flight.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or damaged.
+    """
+
+    def __init__(self, path: Union[str, Path]) -> None:
+        self.file = printable_name(path)
+        with open_file(Path(path)) as stream:
+            try:
+                with gzip.open(stream) as opened:
+                    content = opened.read(LARGEST + 1)
+                head, _, rest = content.partition(b"\n")
+                self.about: Dict[str, Any] = json.loads(head)
+                version = self.about["quadcore session"]
+                self._records = list(_split(rest))
+            except (
+                OSError,
+                EOFError,
+                ValueError,
+                LookupError,
+                TypeError,
+                struct.error,
+                zlib.error,
+            ) as error:
+                raise InputError(f"{self.file}: is no whole session. Record it again.") from error
+        if version != _VERSION or len(content) > LARGEST:
+            raise InputError(f"{self.file}: its version or size is not supported. Record it again.")
+        self._digest = 0
+        self._next = 0
+
+    def send(self, packet: bytes, port: int, fail: Fail) -> None:
+        """Add a packet to the digest."""
+        self._digest = zlib.crc32(packet, self._digest)
+
+    def ask(self, packet: bytes, port: int, fail: Fail) -> bytes:
+        """Return the recorded answer, if the flight has sent what was recorded."""
+        if self._next == len(self._records):
+            raise fail(f"{self.file} ends here. Replay no more than was recorded.")
+        digest, answer = self._records[self._next]
+        if zlib.crc32(packet, self._digest) != digest:
+            raise fail(
+                f"the flight differs from {self.file}, which was recorded with other values or "
+                "another version of quadcore"
+            )
+        self._next += 1
+        self._digest = 0
+        return answer
+
+    def rewind(self) -> None:
+        """Return to the begin of the flight."""
+        self._digest = self._next = 0
+
+    @property
+    def is_at_end(self) -> bool:
+        """Whether all answers have been given."""
+        return self._next == len(self._records)
+
+
+def _split(content: bytes) -> Iterator[Tuple[int, bytes]]:
+    at = 0
+    while at < len(content):
+        digest, size = _RECORD.unpack_from(content, at)
+        at += _RECORD.size
+        if at + size > len(content):
+            raise ValueError("a record is cut")
+        yield digest, content[at : at + size]
+        at += size
