@@ -64,6 +64,8 @@ class FlightRecord(NamedTuple):
     world: World
     elapsed: float = 0.0
     """Wall-clock duration, s."""
+    command_topic: str = ""
+    """Topic of the commands, if the log contains it."""
     flat_states: Optional[np.ndarray] = None
     """Result of `sample_flat_states` at the times of the log."""
 

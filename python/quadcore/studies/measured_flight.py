@@ -21,6 +21,7 @@ from ..support.warning import suppress_warnings
 from .controller_timing import summarise_durations
 from .criteria import DEFAULT, Criteria
 from .grouped_flights import FlightRecord, fly_group, make_record
+from .spectra import Spectra, compute_spectra
 from .step_response import step_response
 from .table import NOT_FLOWN
 from .time_limit import time_limit
@@ -55,6 +56,8 @@ class Outcome(NamedTuple):
     """Decimated log, if kept."""
     response: Optional[np.ndarray] = None
     """Result of `step_response`, if kept."""
+    spectra: Optional[Spectra] = None
+    """Power spectral densities, if the log contains the commands."""
     limit: float = float("inf")
     """Limit of the joint speeds, rad/s."""
     vehicle: Optional[DrawnVehicle] = None
@@ -94,6 +97,7 @@ def fly_alone(
     keep: bool = False,
     timed: bool = True,
     needs_flat_states: bool = False,
+    logs_commands: bool = False,
 ) -> FlightRecord:
     """Simulate a flight.
 
@@ -109,6 +113,8 @@ def fly_alone(
         Whether to time each update of the controller, which slows the flight.
     needs_flat_states
         Whether the record has `flat_states`.
+    logs_commands
+        Whether to log the commands, for spectra.
 
     Raises
     ------
@@ -122,6 +128,9 @@ def fly_alone(
         simulation = flight.simulation()
         pilot: Any = flight.pilot(simulation, timed)
         topics = _animated_topics(simulation) if keep else []
+        commands = simulation.command_topic if logs_commands else ""
+        if commands and commands not in topics:
+            topics.append(commands)
         rows = Rows(simulation, list_columns(simulation, topics, pilot))
         try:
             with convert_controller_errors(simulation):
@@ -145,6 +154,7 @@ def fly_alone(
             flight,
             log=log,
             flat_states=flat_states,
+            command_topic=commands,
             failure=failure,
             calls=pilot.updates,
             saturated=pilot.saturated,
@@ -206,10 +216,15 @@ def measure_record(
     if not keep:
         return outcome
     response = None if flight.failure else step_response(log)
+    spectra = compute_spectra(log, flight.command_topic) if flight.command_topic else None
     with suppress_warnings():
         vehicle = read_vehicle(flight.model)
     return outcome._replace(
-        log=decimate(log), response=response, limit=flight.limit, vehicle=vehicle
+        log=decimate(log),
+        response=response,
+        spectra=spectra,
+        limit=flight.limit,
+        vehicle=vehicle,
     )
 
 

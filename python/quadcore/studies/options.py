@@ -275,6 +275,11 @@ class EvaluateOptions(CriteriaOptions):
         "measured on this machine",
         parse.computation_time, arguments.COMPUTATION_TIME, "none",
     ))  # fmt: skip
+    spectra: bool = field(default=False, metadata=_describe(
+        STUDY, "spectra", "",
+        "also draw the power spectral densities of angular velocities and commands",
+        kind=arguments.FLAG, without="false",
+    ))  # fmt: skip
     frequency_response: bool = field(default=False, metadata=_describe(
         STUDY, "frequency-response", "",
         "also measure the frequency responses of the loops in hover",
@@ -286,6 +291,7 @@ class EvaluateKeywords(CriteriaKeywords, total=False):
     """`EvaluateOptions` as keyword arguments, for type checkers."""
 
     computation_time: Union[float, str, None]
+    spectra: bool
     frequency_response: bool
 
 

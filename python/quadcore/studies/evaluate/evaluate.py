@@ -290,8 +290,14 @@ class _Flights:
             return records if apart else list(map(finish, rows, records))
 
         def fly_one(i: int) -> FlightRecord:
-            flat = criteria.needs_flat_states
-            return fly_alone(flights[i], options.time_limit, i in drawn, needs_flat_states=flat)
+            is_drawn = i in drawn
+            return fly_alone(
+                flights[i],
+                options.time_limit,
+                is_drawn,
+                needs_flat_states=criteria.needs_flat_states,
+                logs_commands=is_drawn and self._plan.draws_spectra,
+            )
 
         def finish(i: int, found: Union[FlightRecord, Outcome]) -> Outcome:
             if isinstance(found, Outcome):

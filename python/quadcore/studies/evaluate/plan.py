@@ -65,6 +65,7 @@ class Plan(Cases):
         """Whether the computation times are to be measured before the flights."""
         if time is not None and not self.measures_times:
             self.set_computation_times([float(time)] * len(control.controllers))
+        self.draws_spectra = options.spectra
         self.measures_loops = options.frequency_response
         self.criteria = options.make_criteria()
         self.scenarios = [label_point(point) for point in design]

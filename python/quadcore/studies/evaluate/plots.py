@@ -74,6 +74,8 @@ def draw(
             mark_events(figures[f"{kind}_{i}"], (events or {}).get(scenario, ()))
         if any(flight.outcome.response is not None for flight in flights):
             figures[f"response_{i}"] = _draw_responses(name, flights)
+        if any(flight.outcome.spectra is not None for flight in flights):
+            figures[f"spectra_{i}"] = _draw_spectra(name, flights)
     if any(group["flights"] * (1 - group["failure_rate"]) > 1 for group in evaluation.groups):
         figures["seeds"] = _draw_boxes(evaluation)
     if any(not row["failure"] for row in evaluation.loops):
@@ -96,7 +98,7 @@ def draw(
 def is_plot(name: str) -> bool:
     """Whether `draw` makes plots with that name."""
     return (
-        re.fullmatch(r"(tracks|errors|rotors|response)_\d+|seeds|margins|rates|loops", name)
+        re.fullmatch(r"(tracks|errors|rotors|response|spectra)_\d+|seeds|margins|rates|loops", name)
         is not None
     )
 
@@ -229,6 +231,24 @@ def _draw_responses(name: str, flights: Flights) -> Figure:
     axes.set_ylabel("position / step (1)")
     axes.set_xlabel("time after the step (s)")
     _add_legend(figure, axes)
+    return figure
+
+
+def _draw_spectra(name: str, flights: Flights) -> Figure:
+    above = _header_height([flight.label for flight in flights])
+    figure, grid = panels(f"Power spectral densities: {name}", 2, height=2.2, above=above)
+    for (axes,), (part, quantity) in zip(
+        grid, (("rates", "angular velocity"), ("commands", "commanded rotor speed"))
+    ):
+        for label, outcome, style, _ in flights:
+            if outcome.spectra is not None:
+                density = getattr(outcome.spectra, part)[1:]
+                frequencies = outcome.spectra.frequencies[1:]
+                density = np.maximum(density, np.finfo(float).tiny)  # of a constant: 0
+                axes.loglog(frequencies, density, label=label, linewidth=1, **curve_style(style))
+        axes.set_ylabel(f"{quantity}\n((rad/s)$^2$/Hz)")
+    grid[-1, 0].set_xlabel("frequency (Hz)")
+    _add_legend(figure, *grid[:, 0])
     return figure
 
 
