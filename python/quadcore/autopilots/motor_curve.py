@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Sequence, Tuple, Union
+from typing import Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -33,13 +33,9 @@ class MotorCurve:
     """
 
     def __init__(self, curve: CurveLike, max_speeds: np.ndarray) -> None:
-        self._table = None if isinstance(curve, str) else check_pairs(curve)
+        self._table = read_curve(curve)
         self._exponent = 0.5 if curve == "thrust" else 1.0
         self._max_speeds = np.asarray(max_speeds, dtype=float)
-        if isinstance(curve, str) and curve not in KINDS:
-            raise InputError(
-                f"motor_curve is {shorten(curve)}. Give speed, thrust, or [[output, rad/s], ...]."
-            )
         if self._table is None and not np.all(np.isfinite(self._max_speeds)):
             raise InputError(
                 f"motor_curve '{curve}' needs the maximum speed of the motors, which is unlimited. "
@@ -59,8 +55,20 @@ class MotorCurve:
         return np.asarray(np.clip(speeds / self._max_speeds, 0, 1) ** (1 / self._exponent))
 
 
-def check_pairs(curve: object) -> np.ndarray:
-    """Return outputs and speeds of a curve, shape (2, rows); raises `InputError` if it is wrong."""
+def read_curve(curve: object) -> Optional[np.ndarray]:
+    """Return outputs and speeds of a curve, shape (2, rows), or None for one of `KINDS`.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    if isinstance(curve, str):
+        if curve not in KINDS:
+            raise InputError(
+                f"motor_curve is {shorten(curve)}. Give speed, thrust, or [[output, rad/s], ...]."
+            )
+        return None
     try:
         table = np.array(curve, dtype=float).T
     except (TypeError, ValueError):

@@ -10,7 +10,7 @@ from .._core import InputError
 from ..support.user_code import find_controller
 from .autopilot import Autopilot
 from .betaflight.betaflight import Betaflight
-from .motor_curve import check_pairs
+from .motor_curve import read_curve
 from .session import Session
 from .stack_file import StackFile, read_stack_file
 
@@ -45,9 +45,9 @@ def read_autopilot(path: Union[str, Path]) -> Autopilot:
     """
     read = read_stack_file(path, tuple(STACKS))
     values = {**read.values, "program": _find_program(read)}
-    if not isinstance(values.get("motor_curve", ""), str):
+    if "motor_curve" in values:
         try:
-            check_pairs(values["motor_curve"])
+            read_curve(values["motor_curve"])
         except InputError as error:
             raise InputError(f"{read.locate('motor_curve')}{error}") from None
     if "pilot" in values:

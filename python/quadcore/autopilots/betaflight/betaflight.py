@@ -25,7 +25,7 @@ from .msp import Msp
 from .packets import RAW_PORT, Ports, pack_radio, pack_state, read_motors
 from .parameters import COMMANDS, DEFAULTS, IDLE, MAX_ANGLE, MAX_YAW_RATE, write_parameters
 
-_ARM, _SPIN_UP = 1.5, 0.3  # s before the flight
+_ARM, _SPIN_UP = 1.5, 0.05  # s before the flight
 _LOGGED = ("roll", "pitch", "yaw", "throttle", "arming_switch", "armed")
 _STILL = (0.0, 0.0, 0.0, 0.0)
 _DISARMED = 0.1  # s without output after which an armed autopilot counts as disarmed
@@ -60,7 +60,7 @@ class Betaflight(Autopilot):
     motor_curve, rotors, imu
         As for `Autopilot`.
     where : mapping of str to str, default {}
-        ``FILE:LINE: `` of the values in a stack file, by name, for messages.
+        ``FILE:LINE`` of the values in a stack file, by name, for messages.
     """
 
     # motors 1 to 4 of the mixer QUADX, src/main/flight/mixer_init.c
