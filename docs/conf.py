@@ -85,7 +85,7 @@ def _is_documented_by_its_class(app, what, name, member, skip, options):
 
 
 def _make_flights(page):
-    """Fly the spiral under three laws, to watch on the first page."""
+    """Simulate the spiral with three controllers, for the animation on the first page."""
     quadcore_ = [sys.executable, "-m", "quadcore"]
     flight = "--engine eigen --xacro sim_slow:=1 --reference spiral --duration 20 --log-every 20"
     logs = []

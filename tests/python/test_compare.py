@@ -1,4 +1,4 @@
-"""Comparing models and parameters: what is told, what is flown, what is refused."""
+"""Comparisons of models and parameters: differences, flights and refusals."""
 
 from __future__ import annotations
 

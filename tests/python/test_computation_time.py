@@ -79,13 +79,13 @@ def test_a_measured_time_delays_the_command_and_is_stated(capsys):
     assert 0 < times["geometric"] < 0.003 < times["own.py:Slow"] < 0.2
     delays = [row["delay"] for row in content["flights"]]
     assert delays[1] == pytest.approx(0.001 + times["own.py:Slow"])
-    told = " ".join(capsys.readouterr().out.split())
+    output = " ".join(capsys.readouterr().out.split())
     page = Path("out/report.html").read_text()
     for text in (
         "Commands are delayed by computation times measured on this machine",
         "The computation time of own.py:Fails is not measured, because its flight failed.",
     ):
-        assert text in told and text in page
+        assert text in output and text in page
 
 
 def test_the_page_has_the_times_of_own_controllers_only():

@@ -1,4 +1,4 @@
-"""Flights in closed loop: when a law is asked, what it is told, what becomes of its faults."""
+"""Flights in closed loop: times and arguments of the calls, and errors of controllers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import quadcore as qc
 
 
 class HeightController:
-    """Holds a height by what it is told, and notes when it was asked."""
+    """Hold a height by the odometry, and record the times of the calls."""
 
     def __init__(self, rate=None):
         self.asked = []

@@ -277,7 +277,7 @@ def test_the_shipped_vehicles_hear_of_faults():
 
 
 def test_a_controller_that_starts_in_mid_flight_has_the_model_of_the_undamaged_vehicle(hangar):
-    """What has befallen it since is told on topics, or not at all."""
+    """Later faults are published on topics, or not at all."""
     simulation = hangar(with_plugins(make_motored(), plugin("fault", {"losses": "0.001 1 0.9"})), G)
     controller = qc.controllers.geometric()
     start = simulation.state.copy()

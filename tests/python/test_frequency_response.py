@@ -114,7 +114,7 @@ def test_page_json_and_terminal_have_the_loops(tmp_path, monkeypatch, capsys):
     loops = json.loads(Path("out/evaluation.json").read_text())["loops"]
     assert [row["axis"] for row in loops] == ["z", "roll", "pitch", "yaw"]
     assert loops[0]["linear_delay_margin"] is None
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     page = Path("out/report.html").read_text()
-    assert "crossover" in told and "Frequency responses in hover" in page
+    assert "crossover" in output and "Frequency responses in hover" in page
     assert Path("out/loops.png").exists()

@@ -1,4 +1,4 @@
-"""Vehicles that lose a rotor: what the allocation makes of it that is told."""
+"""Vehicles that lose a rotor: allocation with and without detection."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ CALLED_BACK = {"controller": by_controller, "reference": by_reference, "progress
 @pytest.mark.parametrize("call", MOVES)
 @pytest.mark.parametrize("who", CALLED_BACK)
 def test_who_moves_a_vehicle_in_flight_ends_the_flight_and_its_log_stays(who, call):
-    """A duration that is flown in several pieces, between which progress is told."""
+    """A duration of several pieces, with a call of progress between them."""
     simulation, untouched = (quadrotor("eigen") for _ in range(2))
     options = CALLED_BACK[who](simulation, MOVES[call])
     with pytest.raises(qc.InputError) as error:

@@ -58,7 +58,7 @@ def make_firefly(tmp_path):
 
 
 def measure_wind(simulation, place):
-    """Wind that is told where the mast is put."""
+    """Wind at the position of the mast."""
     state = simulation.state.copy()
     state.position = np.asarray(place) - X_FS
     state.orientation = [0, 0, 0, 1]

@@ -1,4 +1,4 @@
-"""What a plugin is told of the vehicle it flies on."""
+"""Description of its vehicle that a plugin receives."""
 
 from __future__ import annotations
 

@@ -202,7 +202,7 @@ def _replace_hooks(arguments: _Arguments, outside: Dependencies) -> Iterator[Non
             raise
 
     def warning(message: str) -> None:
-        outside.may_be_kept = False  # it would not be told again
+        outside.may_be_kept = False  # a cached expansion would not warn again
         place = _find_place(frame for frame, _ in traceback.walk_stack(None))
         warn(f"{place}: {message}" if place else message)
 
