@@ -9,7 +9,8 @@ from test_player import HELP, column_of, contents_of, flown
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.report.player import PlayerFlight, list_animated_topics, make_page
+from quadcore.report.player import PlayerFlight, make_page
+from quadcore.report.player_flight import list_animated_topics
 
 SCENARIO = (
     "plugins:\n"

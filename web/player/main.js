@@ -170,7 +170,12 @@ class Player {
     }
     on(".show-names", "change", () => this.placeNames());
     on(".save-gif", "click", () => {
-      download(this.makeGif(), "flight.gif", "image/gif");
+      this.tell("");
+      try {
+        download(this.makeGif(), "flight.gif", "image/gif");
+      } catch (error) {
+        this.tell(`The GIF cannot be made: ${error.message}. Save a video instead.`);
+      }
     });
     on(".save-video", "click", () => this.saveVideo());
   }
@@ -178,18 +183,29 @@ class Player {
   makeGif() {
     this.play(false);
     const was = this.time;
-    const bytes = makeGif(this.scene, this.begin, this.end, (t) => this.scene.show(t));
-    this.go(was);
-    return bytes;
+    try {
+      return makeGif(this.scene, this.begin, this.end, (t) => this.scene.show(t));
+    } finally {
+      this.go(was);
+    }
   }
 
+  tell(text) { this.part(".state").textContent = text; }
+
   saveVideo() {
-    this.part(".save-video").disabled = true;
+    this.tell("");
     this.go(this.begin);
-    const stop = recordVideo(this.scene.canvas, (video) => {
-      this.part(".save-video").disabled = false;
-      download(video, "flight.webm", "video/webm");
-    });
+    let stop;
+    try {
+      stop = recordVideo(this.scene.canvas, (video) => {
+        this.part(".save-video").disabled = false;
+        download(video, "flight.webm", "video/webm");
+      });
+    } catch (error) {
+      this.tell(`This browser cannot record a video: ${error.message}. Save a GIF instead.`);
+      return;
+    }
+    this.part(".save-video").disabled = true;
     this.play(true);
     const wait = () => (this.playing ? setTimeout(wait, 100) : stop());
     wait();

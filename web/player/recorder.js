@@ -14,18 +14,21 @@ export function makeGif(scene, begin, end, ground) {
   const context = scene.renderer.getContext();
   const pixels = new Uint8Array(4 * WIDTH * HEIGHT), upright = new Uint8Array(4 * WIDTH * HEIGHT);
   scene.setSize(WIDTH, HEIGHT, 1);
-  for (let i = 0; i < frames; ++i) {
-    ground(begin + (end - begin) * i / (frames - 1));
-    context.readPixels(0, 0, WIDTH, HEIGHT, context.RGBA, context.UNSIGNED_BYTE, pixels);
-    for (let row = 0; row < HEIGHT; ++row) {
-      const from = 4 * WIDTH * (HEIGHT - 1 - row);
-      upright.set(pixels.subarray(from, from + 4 * WIDTH), 4 * WIDTH * row);
+  try {
+    for (let i = 0; i < frames; ++i) {
+      ground(begin + (end - begin) * i / (frames - 1));
+      context.readPixels(0, 0, WIDTH, HEIGHT, context.RGBA, context.UNSIGNED_BYTE, pixels);
+      for (let row = 0; row < HEIGHT; ++row) {
+        const from = 4 * WIDTH * (HEIGHT - 1 - row);
+        upright.set(pixels.subarray(from, from + 4 * WIDTH), 4 * WIDTH * row);
+      }
+      const palette = quantize(upright, 128);
+      encoder.writeFrame(applyPalette(upright, palette), WIDTH, HEIGHT, { palette, delay: 1000 / RATE });
     }
-    const palette = quantize(upright, 128);
-    encoder.writeFrame(applyPalette(upright, palette), WIDTH, HEIGHT, { palette, delay: 1000 / RATE });
+  } finally {
+    scene.resize();
   }
   encoder.finish();
-  scene.resize();
   return encoder.bytes();
 }
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import base64
+import contextlib
+import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 from pathlib import Path
+from typing import Sequence
 
 from .._core import InputError
 
@@ -36,25 +40,39 @@ def make_gif(page: str) -> bytes:
             "a GIF needs Chromium or Chrome. Install one (Debian, Ubuntu: apt install chromium), "
             "or press 'Save GIF' in the page."
         )
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "page.html"
+    folder = Path(tempfile.mkdtemp())
+    try:
+        file = folder / "page.html"
         file.write_text(page, encoding="utf-8")
-        command = [
-            *[program, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"],
-            *["--enable-unsafe-swiftshader", f"--user-data-dir={folder}/user"],
-            *["--virtual-time-budget=600000", "--dump-dom", f"{file.as_uri()}#gif"],
-        ]
-        try:
-            answer = subprocess.run(
-                command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=_LONGEST
-            )
-        except subprocess.TimeoutExpired:
-            raise InputError(
-                f"{program}: has not drawn the GIF within {_LONGEST:g} s. Give a shorter flight."
-            ) from None
-    found = re.search(rb'<pre id="gif">([A-Za-z0-9+/=]+)</pre>', answer.stdout)
+        answer = _run(
+            [
+                *[program, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"],
+                *["--enable-unsafe-swiftshader", f"--user-data-dir={folder}/user"],
+                *["--virtual-time-budget=600000", "--dump-dom", f"{file.as_uri()}#gif"],
+            ]
+        )
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    found = re.search(rb'<pre id="gif">([A-Za-z0-9+/=]+)</pre>', answer)
     if found is None:
         raise InputError(
             f"{program}: has drawn no GIF. Open the page (-o PAGE.html), and press 'Save GIF'."
         )
     return base64.b64decode(found.group(1))
+
+
+def _run(command: Sequence[str]) -> bytes:
+    """Run a browser and return what it prints; none of its processes remains."""
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True
+    )
+    try:
+        return process.communicate(timeout=_LONGEST)[0]
+    except subprocess.TimeoutExpired:
+        raise InputError(
+            f"{command[0]}: has not drawn the GIF within {_LONGEST:g} s. Give a shorter flight."
+        ) from None
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 import zlib
 from typing import Any, Dict, List, Optional, Sequence
 
@@ -175,3 +176,8 @@ def choose_quantum(values: np.ndarray) -> float:
     finite = values[np.isfinite(values)]
     span: Optional[float] = float(np.ptp(finite)) if len(finite) else None
     return 2.0 ** np.floor(np.log2(span / 16384)) if span else 0.0
+
+
+def finite_or_none(number: float) -> Optional[float]:
+    """Return a number, or None for an infinite one, which JSON does not have."""
+    return number if math.isfinite(number) else None

@@ -12,7 +12,8 @@ from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
 from ..report.cameras import CAMERAS
 from ..report.page_server import EVENTS, PageServer
-from ..report.player import list_columns, make_live_page
+from ..report.player import make_live_page
+from ..report.player_flight import list_columns
 from .log import Log
 from .simulation import Simulation
 from .trajectory import find_speed_limit

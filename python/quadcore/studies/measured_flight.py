@@ -253,6 +253,6 @@ def fly_together(
 
 
 def _animated_topics(simulation: Simulation) -> List[str]:
-    from ..report.player import list_animated_topics  # jinja2 is slow to import
+    from ..report.player_flight import list_animated_topics  # jinja2 is slow to import
 
     return list_animated_topics(simulation)
