@@ -48,6 +48,7 @@ after = qc.evaluate(
 after
 
 # %%
+plt.style.use(qc.PLOT_STYLE)
 figure, axes = plt.subplots()
 for row, outcome in after.drawn.items():
     inputs = after.table[row]

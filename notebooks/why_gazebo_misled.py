@@ -47,6 +47,7 @@ def simulate_fall(engine, dt=0.001, sim_slow=1):
 
 # %%
 logs = {engine: simulate_fall(engine) for engine, _ in qc.engines()}
+plt.style.use(qc.PLOT_STYLE)
 figure, axes = plt.subplots()
 for engine, log in logs.items():
     axes.plot(log.time, log["wy"], label=engine)

@@ -11,6 +11,7 @@ the same files without these bugs.
 10.0 m
 """
 
+import os
 import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, List
@@ -63,7 +64,11 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
+PLOT_STYLE = os.path.join(os.path.dirname(__file__), "report", "quadcore.mplstyle")
+"""Style sheet of quadcore's plots, for ``matplotlib.pyplot.style.use``."""
+
 __all__ = [
+    "PLOT_STYLE",
     "AttitudeThrust",
     "BatchSimulation",
     "BatchState",

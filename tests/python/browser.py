@@ -100,6 +100,28 @@ function look(view, inside, width) {
 }
 """
 
+AUDIT = """
+async function look(view, inside) {
+  while (inside.querySelector(".quadcore-player") && !view.quadcore)
+    await new Promise((resolve) => setTimeout(resolve, 10));
+  if (view.quadcore) await view.quadcore.ready;
+  for (const fold of inside.querySelectorAll("details")) fold.open = true;
+  await new Promise((resolve) => setTimeout(resolve, 100));
+  const seen = { exclude: [[".plot > svg > g"]] };  // drawings have names
+  const { violations } = await view.axe.run(seen, { resultTypes: ["violations"] });
+  return {
+    dark: view.matchMedia("(prefers-color-scheme: dark)").matches,
+    violations: violations
+      .filter(({ impact }) => ["serious", "critical"].includes(impact))
+      .map(({ id, nodes }) => `${id}: ${nodes[0].html} ${nodes[0].failureSummary}`),
+    faults: view.faults,
+    requests: view.performance.getEntriesByType("resource").map(({ name }) => name.slice(0, 99)),
+    images: inside.images.length,
+    text: inside.body.innerText,
+  };
+}
+"""
+
 PLAY = """
 async function look(view, inside) {
   const within = inside.querySelector("iframe");
@@ -183,14 +205,14 @@ def find_violations(page, folder, *options):
     return found["found"]
 
 
-def look_at_pages(look, files, widths, folder, fonts="wide"):
+def look_at_pages(look, files, widths, folder, fonts="wide", options=()):
     """Open files at some widths (px): what a script finds in each, by (file, width)."""
     pages = [(str(file), file.as_uri(), width) for file in files for width in widths]
     script = f"const PAGES = {json.dumps(pages)};{IN_FRAMES}{look}"
     whole = f"<html><head>{CATCH}<script>{script}</script></head><body></body></html>"
     # As much time as the pages want; none passes while nothing happens.
-    options = "--allow-file-access-from-files", "--virtual-time-budget=1000000"
-    found = open_page(whole, folder, *options, fonts=fonts)
+    needed = "--allow-file-access-from-files", "--virtual-time-budget=1000000"
+    found = open_page(whole, folder, *needed, *options, fonts=fonts)
     return {(name, width): found[f"{name} {width}"] for name, _, width in pages}
 
 
@@ -205,6 +227,26 @@ def what_sticks_out(files, widths, folder):
         for fonts in FONTS
         for page, out in look_at_pages(STICK_OUT, files, widths, folder, fonts).items()
     }
+
+
+def audit_pages(files, folder, dark=False):
+    """What is wrong with pages that are open with all their folds, by file.
+
+    These are lines in the console and faults, requests, images, and what axe-core finds serious
+    or critical.
+    """
+    if not AXE.exists():
+        pytest.skip("needs axe-core; scripts/bundle_player installs it")
+    head = f"<head>{CATCH}<script>{AXE.read_text(encoding='utf-8')}</script>"
+    copies = {}
+    for number, file in enumerate(files):
+        copy = folder / f"audited_{number}.html"
+        copy.write_text(file.read_text(encoding="utf-8").replace("<head>", head, 1))
+        copies[str(copy)] = file
+    options = [DARK] if dark else []
+    found = look_at_pages(AUDIT, map(Path, copies), [1280], folder, options=options)
+    assert all(each.pop("dark") == dark for each in found.values())
+    return {copies[name]: each for (name, _), each in found.items()}
 
 
 def assert_it_plays(file, widths, folder):

@@ -127,6 +127,22 @@ def test_a_log_is_drawn_in_formats_from_python():
         log.plot("out", formats=["jpg"])
 
 
+def test_the_style_sheet_has_the_colours_of_flights_and_styles_plots_of_users():
+    from matplotlib import pyplot as plt
+
+    _, grid = panels("ours", 1)
+    with plt.style.context(qc.PLOT_STYLE):
+        colours = plt.rcParams["axes.prop_cycle"].by_key()["color"]
+        _, axes = plt.subplots()
+        (curve,) = axes.plot([0, 1])
+        assert curve.get_color() == PALETTE[0]
+        for side in ("top", "right", "left"):
+            assert axes.spines[side].get_visible() == grid[0, 0].spines[side].get_visible()
+        assert axes.get_axisbelow() == grid[0, 0].get_axisbelow()
+        plt.close("all")
+    assert tuple(colours) == PALETTE
+
+
 def test_formats_in_a_file_of_options_count():
     Path("study.yaml").write_text(
         "controller: geometric\nreference: circle\nduration: 0.2\nformat: [svg]\n"

@@ -30,6 +30,7 @@ def _describe_mix() -> str:
 # Files need no window, and a wrong name of a toolkit for windows must not end a flight.
 _toolkit = os.environ.pop("MPLBACKEND", None)
 try:
+    from matplotlib import rc_params_from_file
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.ticker import ScalarFormatter
@@ -42,6 +43,10 @@ finally:
     if _toolkit is not None:
         os.environ["MPLBACKEND"] = _toolkit
 
+# Read, not used: matplotlib's settings are global, and would affect other threads.
+_STYLE: Dict[str, Any] = rc_params_from_file(  # type: ignore[assignment]
+    os.path.join(os.path.dirname(__file__), "quadcore.mplstyle"), use_default_template=False
+)
 AXES = ("#d55e00", "#009e73", "#0072b2")  # colours of x, y, z in all plots
 REFERENCE = {"color": "0.25", "linestyle": (0, (4, 3)), "linewidth": 1, "label": "reference"}
 WHOLE = (0.0, 0.02, 0.94, 0.94)  # part of a figure that 3D axes fill
@@ -135,7 +140,7 @@ def subplots(figure: Figure, rows: int, columns: int, margins: Any, **shared: An
     for axes in grid.flat:
         dress(axes)
         axes.yaxis.set_major_formatter(_Numbers())
-        axes.ticklabel_format(axis="y", scilimits=(-3, 4))
+        axes.ticklabel_format(axis="y", scilimits=_STYLE["axes.formatter.limits"])
     figure.align_ylabels(grid)
     return grid
 
@@ -153,11 +158,11 @@ class _Numbers(ScalarFormatter):
 
 def dress(axes: Any) -> None:
     """Style a panel."""
-    axes.grid(color="0.9", linewidth=0.6)
-    axes.set_axisbelow(True)
-    axes.margins(x=0.01)
-    axes.spines["top"].set_visible(False)
-    axes.spines["right"].set_visible(False)
+    axes.grid(color=_STYLE["grid.color"], linewidth=_STYLE["grid.linewidth"])
+    axes.set_axisbelow(_STYLE["axes.axisbelow"])
+    axes.margins(x=_STYLE["axes.xmargin"])
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(_STYLE[f"axes.spines.{side}"])
 
 
 def widen(axes: Any, least: float) -> None:
@@ -177,9 +182,9 @@ def flatten(axes: Any, least: float) -> None:
         axes.set_yticks([middle])
 
 
-def make_figure(title: str, width: float, height: float, dpi: int = 150) -> Figure:
+def make_figure(title: str, width: float, height: float, dpi: Optional[int] = None) -> Figure:
     """Make an empty figure; width and height in inches."""
-    figure = Figure(figsize=(width, height), dpi=dpi)
+    figure = Figure(figsize=(width, height), dpi=dpi or _STYLE["figure.dpi"])
     figure.set_label(title)
     figure.suptitle(
         title, x=0.1 / width, y=1 - 0.1 / height, ha="left", va="top", fontsize="medium"
