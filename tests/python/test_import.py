@@ -46,6 +46,12 @@ def test_a_urdf_is_flown_without_them(tmp_path):
     assert done.stdout.split() == []
 
 
+def test_the_command_line_starts_without_what_only_some_commands_need():
+    slow = [*SLOW[:4], "xacro", "cma", "gymnasium", "pandas", "fmpy", "pyulog"]
+    text = f"import sys, quadcore.cli; print(*(name for name in {slow} if name in sys.modules))"
+    assert script(text).stdout.split() == []
+
+
 def test_every_name_is_there_when_it_is_asked_for():
     text = "import quadcore; print(*(name for name in dir(quadcore) if hasattr(quadcore, name)))"
     assert set(qc.__all__) <= set(script(text).stdout.split())

@@ -10,7 +10,6 @@ import math
 from typing import List, Sequence, Tuple
 
 import numpy as np
-from scipy.special import stdtr, stdtrit
 
 CONFIDENCE = 0.95
 WORST = 0.1
@@ -26,6 +25,8 @@ def compute_interval(values: np.ndarray) -> Tuple[float, float]:
     """
     if len(values) < 2:
         return math.nan, math.nan
+    from scipy.special import stdtrit  # scipy is slow to import
+
     reach = float(stdtrit(len(values) - 1, (1 + CONFIDENCE) / 2)) * _compute_standard_error(values)
     mean = float(values.mean())
     return mean - reach, mean + reach
@@ -40,6 +41,8 @@ def compute_p_value(values: np.ndarray) -> float:
         return math.nan
     if np.ptp(values) < EQUAL:
         return float(abs(values.mean()) < EQUAL)
+    from scipy.special import stdtr
+
     size = abs(float(values.mean())) / _compute_standard_error(values)
     return 2 * float(stdtr(len(values) - 1, -size))
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import Any, List, NamedTuple, Tuple
 
 import numpy as np
-from scipy.integrate import solve_ivp
-from scipy.spatial.transform import Rotation
 
 from ..._core import FlightError
 from ...simulation.commands import check_commands
@@ -175,6 +173,8 @@ class MathematicalModel:
         """Return the states at times, and at the end of an interval with constant command."""
         if end <= begin:
             return np.tile(y, (len(wanted), 1)), y
+        from scipy.integrate import solve_ivp  # scipy is slow to import
+
         solution = solve_ivp(
             lambda _, y: self._derivative(y, command),
             (begin, end),
@@ -227,6 +227,8 @@ class MathematicalModel:
     def _log(self, time: np.ndarray, rows: np.ndarray) -> Log:
         """Make a log with the position of the frame origin; xi is the centre of mass."""
         xi, eta, xidot, etadot, omega = np.split(rows, [3, 6, 9, 12], axis=1)
+        from scipy.spatial.transform import Rotation
+
         attitude = Rotation.from_euler("ZYX", eta[:, ::-1])
         nu = np.array([euler_rates_to_body(a) @ rate for a, rate in zip(eta, etadot)])
         offset = attitude.apply(self.vehicle.center_of_mass)

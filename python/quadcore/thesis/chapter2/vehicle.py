@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Dict, List, Sequence
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..._core import InputError, PluginInfo
 from ...formats.mat import write_variables
@@ -95,6 +94,8 @@ class Vehicle:
         order = list_command_order(simulation)
         joints = [simulation.model.joints[i] for i in order]
         links = [simulation.model.links[1 + i] for i in order]  # the first is the frame
+        from scipy.spatial.transform import Rotation  # scipy is slow to import
+
         turns = [Rotation.from_euler("xyz", joint.rpy) for joint in joints]
         parts = list(zip(joints, links, turns))
         places = [joint.xyz + turn.apply(link.center_of_mass) for joint, link, turn in parts]
