@@ -48,7 +48,8 @@ class Horizons:
     width : int
         Number of compared values per piece.
     corrections : int
-        Number of corrections of each start: position, turn, velocity, rates, rotor speeds.
+        Number of corrections of each start: position, turn, velocity, rates, and the rotor speeds
+        if these are compared.
     """
 
     def __init__(
@@ -90,7 +91,7 @@ class Horizons:
         self.record = record
         self._commands, self._command_steps = _make_commands(record, dt, rotors)
         self._angles = _joint_angles(record)
-        self.corrections = 12 + self.rotors
+        self.corrections = 12 + self.rotors * ("rotors" in self.channels)
         sizes = {**CHANNELS, "rotors": self.rotors}
         self.sizes = [sizes[name] for name in self.channels]
         self.width = most * sum(self.sizes)
@@ -172,13 +173,15 @@ class Horizons:
         r, rows = self.record, np.tile(self._first, groups)
         turn = corrections[:, 3:6] - r.rates[rows] * self._late[rows, None]
         moved = corrections[:, :3] - r.velocity[rows] * self._late[rows, None]
+        speeds = r.rotors[rows]
+        speeds[:, : corrections.shape[1] - 12] += corrections[:, 12:]
         return np.hstack(
             [
                 r.position[rows] + moved,
                 _turn(r.orientation[rows], turn),
                 r.velocity[rows] + corrections[:, 6:9],
                 r.rates[rows] + corrections[:, 9:12],
-                r.rotors[rows] + corrections[:, 12:],
+                speeds,
                 self._angles[rows],
             ]
         )

@@ -111,7 +111,7 @@ class Problem:
     def __init__(self, horizons: Horizons, parameters: Sequence[Parameter]) -> None:
         self.horizons, self.parameters = horizons, list(parameters)
         self.starts = np.zeros((horizons.count, horizons.corrections))
-        sizes = (3, 3, 3, 3, horizons.rotors)
+        sizes = (3, 3, 3, 3, horizons.corrections - 12)
         self._start_steps = np.repeat(_START_STEPS, sizes)
         self.noise = np.ones(len(horizons.channels))
         """Estimated standard deviation of each channel."""
