@@ -91,7 +91,7 @@ def register(commands: Any) -> None:
         "non-negative)",
     )
     options.add_commands(
-        parser, " (default: topic vel_cmd of the log, else estimated from its rotor speeds)"
+        parser, " (default: topic vel_cmd of the log, else its rotor speeds)"
     )
     study.add_argument(
         "--sensed",

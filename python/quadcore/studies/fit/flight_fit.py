@@ -11,16 +11,17 @@ from ...model.overrides import list_link_values
 from .coordinates import Coordinates
 from .fitted_model import FittedModel
 from .inputs import INPUT_BOUNDS, INPUTS, guess_speed
-from .instruments import compute_deviations, estimate
+from .instruments import Half, compute_deviations, estimate
 from .predictor import Predictor
-from .prepared import PreparedFlight, split_samples
+from .prepared import PreparedFlight, smooth_rotors, split_samples
 from .problem import Parameter
 from .windows import Windows, compute_errors, make_windows, predict_constant
 
 _STEP = 1e-4  # of a coordinate, for derivatives
 _ROUNDS = 25
 _PRODUCTS = (".ixy", ".ixz", ".iyz")
-_NODES_OF_HALF = 2
+_NODES_OF_HALF, _NODES_OF_INSTRUMENTS = 2, 5
+"""Minimum samples on each side of polynomials through half of the samples."""
 _PRIOR, _TORQUE_PRIOR = 3.0, 1e3
 """Standard deviations of weak priors: coordinates have sizes near 1; 10 rad/s^2 for torques."""
 _FAR = 30.0
@@ -255,12 +256,17 @@ def fit_flights(
     for k, name in enumerate(names):
         free[k] = name not in INPUTS or name in free_inputs
     _fix_speed(search, free, [has and i > 0 for i, has in enumerate(_list_scaled(windows))])
-    halves, begin_x = [search], x
-    x = search.find(x, free, progress)
+    halves, begin_x = [Half(search, search)], x
+    least = search.find(x, free, progress)
+    best: Optional[np.ndarray] = least
     if any(flight.rotors is not None for flight in flights):  # the inputs are noisy
-        halves = [search.replace_windows(half) for half in _split_windows(flights)]
-        x = estimate(halves, begin_x, x, free)
-    deviations = compute_deviations(halves, begin_x, x, free)
+        halves = [_make_half(search, flights, half) for half in (0, 1)]
+        best = estimate(halves, begin_x, least, free)
+    if best is None:  # the flights show hardly more than noise
+        deviations = {n: float("nan") if f else 0.0 for n, f in zip(names, free)}
+    else:
+        x = best
+        deviations = compute_deviations(halves, begin_x, x, free)
     found, trims = search.split(x)
     values = coordinates.name(found)
     units = {p.name: p.unit for p in parameters}
@@ -285,12 +291,12 @@ def calibrate_trims(predictor: Predictor, values: Dict[str, float]) -> np.ndarra
     return np.asarray(search.split(search.find(x, free))[1])
 
 
-def _split_windows(flights: Sequence[PreparedFlight]) -> List[Windows]:
-    """Make the windows twice: from even and from odd samples."""
-    return [
-        make_windows([split_samples(flight, half) for flight in flights], _NODES_OF_HALF)
-        for half in (0, 1)
-    ]
+def _make_half(search: Search, flights: Sequence[PreparedFlight], number: int) -> Half:
+    """Make the searches on the even (0) or odd (1) samples."""
+    split = [split_samples(flight, number) for flight in flights]
+    smooth = make_windows([smooth_rotors(flight) for flight in split], _NODES_OF_INSTRUMENTS)
+    raw = make_windows(split, _NODES_OF_HALF)
+    return Half(search.replace_windows(raw), search.replace_windows(smooth))
 
 
 def _list_scaled(windows: Windows) -> List[bool]:

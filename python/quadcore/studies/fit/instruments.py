@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Dict, List, NamedTuple, Sequence, Tuple
+from typing import TYPE_CHECKING, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -14,8 +14,10 @@ _RELEASED = 3
 """Rounds in which coordinates may leave their bounds again."""
 _STILL = 0.03
 """Change relative to the deviation at which the search ends."""
-_LONGEST_STEP = 1.5
-"""Maximum change of a coordinate in a round."""
+_LONGEST_STEP = 0.5
+"""Maximum change of a coordinate in a round, relative to the deviation of the prior."""
+_RUNAWAY = 2.0
+"""Distance from the start, in deviations of the prior, at which least squares are no start."""
 _BLOCKS = 12
 """Blocks of windows per fit, if each gets at least `_SHORTEST` windows."""
 _SHORTEST = 4
@@ -35,6 +37,21 @@ _VAGUE = 0.4
 _POSITIVE = (".ixx", ".iyy", ".izz", ".mass")
 _NORMAL = 1.959964
 """Quantile of the normal distribution for 95 %."""
+
+
+class Half(NamedTuple):
+    """Part of the samples.
+
+    Attributes
+    ----------
+    search : Search
+        Search that gives the errors.
+    smooth : Search
+        Search on smoothed samples that gives the instruments, which smoothing does not bias.
+    """
+
+    search: Search
+    smooth: Search
 
 
 class _Equations(NamedTuple):
@@ -65,8 +82,8 @@ class _Equations(NamedTuple):
 
 
 def estimate(
-    halves: Sequence[Search], start: np.ndarray, x: np.ndarray, free: np.ndarray
-) -> np.ndarray:
+    halves: Sequence[Half], start: np.ndarray, x: np.ndarray, free: np.ndarray
+) -> Optional[np.ndarray]:
     """Estimate coordinates from two halves of the samples, without the bias of noisy inputs.
 
     Least squares are biased if inputs or initial states are noisy, because the derivatives then
@@ -79,7 +96,7 @@ def estimate(
     Parameters
     ----------
     halves
-        Searches on even and on odd samples.
+        Even and odd samples.
     start
         Start values.
     x
@@ -90,24 +107,27 @@ def estimate(
     Returns
     -------
     ndarray
-        Coordinates; the least squares if the search does not settle.
+        Coordinates. If the search does not settle, these are the least squares, or None if
+        the least squares ran away.
     """
-    low, high = halves[0].find_bounds(len(x))
-    prior = halves[0].find_prior(len(x))
-    found = x.copy()
+    low, high = halves[0].search.find_bounds(len(x))
+    prior = halves[0].search.find_prior(len(x))
+    is_runaway = (np.abs(x - start) > _RUNAWAY * prior).any()
+    found = (start if is_runaway else x).copy()
     for done in range(_ROUNDS):
         moving = free & ((done < _RELEASED) | _list_inner(found, low, high))
         step, spread = _solve(_make_equations(halves, found, moving), found - start, prior)
-        after = np.clip(found + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), low, high)
+        longest = _LONGEST_STEP * prior
+        after = np.clip(found + np.clip(step, -longest, longest), low, high)
         moved = np.abs(after - found)[moving]
         found[moving] = after[moving]
         if done >= _RELEASED and (moved < _STILL * np.sqrt(np.diag(spread))[moving]).all():
             return found
-    return x
+    return None if is_runaway else x
 
 
 def compute_deviations(
-    halves: Sequence[Search], start: np.ndarray, x: np.ndarray, free: np.ndarray
+    halves: Sequence[Half], start: np.ndarray, x: np.ndarray, free: np.ndarray
 ) -> Dict[str, float]:
     """Compute the standard deviation of each parameter; NaN if it is not identifiable.
 
@@ -119,7 +139,7 @@ def compute_deviations(
     Parameters
     ----------
     halves
-        Searches on even and on odd samples, or one search on all.
+        Even and odd samples, or all.
     start, free
         As for `estimate`.
     x
@@ -127,12 +147,13 @@ def compute_deviations(
     """
     from scipy.stats import t
 
-    moving = free & _list_inner(x, *halves[0].find_bounds(len(x)))
-    prior = halves[0].find_prior(len(x))
+    search = halves[0].search
+    moving = free & _list_inner(x, *search.find_bounds(len(x)))
+    prior = search.find_prior(len(x))
     equations = _make_equations(halves, x, moving)
     covariance = _solve(equations, x - start, prior)[1]
     covariance *= (t.ppf(0.975, equations.blocks - 1) / _NORMAL) ** 2
-    return _name_deviations(halves[0], x, free, covariance, prior)
+    return _name_deviations(search, x, free, covariance, prior)
 
 
 def _list_inner(x: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -141,12 +162,13 @@ def _list_inner(x: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return inner
 
 
-def _make_equations(halves: Sequence[Search], x: np.ndarray, moving: np.ndarray) -> _Equations:
-    blocks = _list_blocks(halves[0].predictor.windows.flight)
+def _make_equations(halves: Sequence[Half], x: np.ndarray, moving: np.ndarray) -> _Equations:
+    blocks = _list_blocks(halves[0].search.predictor.windows.flight)
     linear = []
     for half in halves:
-        errors, slope = half.linearise(x)
-        linear.append((errors, slope[:, :, moving], 1 / np.sqrt(1 + errors**2)))  # soft_l1
+        errors = half.search.compute(x)
+        slope = half.smooth.linearise(x)[1][:, :, moving]
+        linear.append((errors, slope, 1 / np.sqrt(1 + errors**2)))  # soft_l1
     size = (len(errors), int(moving.sum()))
     scores, slopes, squares = np.zeros(size), np.zeros((*size, size[1])), np.zeros((*size, size[1]))
     for (errors, slope, weight), (_, instrument, _) in zip(linear, linear[::-1]):

@@ -231,6 +231,14 @@ def split_samples(flight: PreparedFlight, half: int) -> PreparedFlight:
     )
 
 
+def smooth_rotors(flight: PreparedFlight) -> PreparedFlight:
+    """Smooth measured rotor speeds."""
+    if flight.rotors is None:
+        return flight
+    time, values = flight.rotors
+    return flight._replace(rotors=Series(time, fit_locally(time, values, time, _REACH)[0]))
+
+
 def sample_state(
     flight: PreparedFlight, at: np.ndarray, nodes: int = NODES
 ) -> Dict[str, np.ndarray]:
