@@ -90,9 +90,7 @@ def register(commands: Any) -> None:
         help="bounds of a free parameter; repeatable (default: non-negative parameters stay "
         "non-negative)",
     )
-    options.add_commands(
-        parser, " (default: topic vel_cmd of the log, else its rotor speeds)"
-    )
+    options.add_commands(parser, " (default: topic vel_cmd of the log, else its rotor speeds)")
     study.add_argument(
         "--sensed",
         metavar="TOPIC",
