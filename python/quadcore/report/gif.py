@@ -34,12 +34,7 @@ def make_gif(page: str) -> bytes:
     InputError
         If there is no browser, or it fails.
     """
-    program = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if program is None:
-        raise InputError(
-            "a GIF needs Chromium or Chrome. Install one (Debian, Ubuntu: apt install chromium), "
-            "or press 'Save GIF' in the page."
-        )
+    program = find_browser()
     folder = Path(tempfile.mkdtemp())
     try:
         file = folder / "page.html"
@@ -59,6 +54,17 @@ def make_gif(page: str) -> bytes:
             f"{program}: has drawn no GIF. Open the page (-o PAGE.html), and press 'Save GIF'."
         )
     return base64.b64decode(found.group(1))
+
+
+def find_browser() -> str:
+    """Return the path of a browser; raises `InputError` without one."""
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if program is None:
+        raise InputError(
+            "a GIF needs Chromium or Chrome. Install one (Debian, Ubuntu: apt install chromium), "
+            "or press 'Save GIF' in the page."
+        )
+    return program
 
 
 def _run(command: Sequence[str]) -> bytes:
