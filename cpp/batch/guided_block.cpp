@@ -1,7 +1,6 @@
 #include "guided_block.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -9,22 +8,6 @@
 #include "quadcore/control/guided_controller.hpp"
 
 namespace quadcore::batch {
-namespace {
-
-/// Make a call of a controller, and note its duration and whether the rotors were saturated.
-template <class Call>
-void count_call(BatchGuided& guided, const Call& call) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::int64_t between_timings = 16;
-  const bool is_timed = guided.calls++ % between_timings == 0;
-  const Clock::time_point begin = is_timed ? Clock::now() : Clock::time_point();
-  guided.saturated += call();
-  if (!is_timed) return;
-  guided.seconds.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
-}
-
-}  // namespace
-
 /// A follower and the memory of its controller.
 struct GuidedBlock::Control {
   Follower* follower;
@@ -33,18 +16,30 @@ struct GuidedBlock::Control {
   std::vector<double> pending, memory;  ///< states of the schedule and of the controller
 };
 
-GuidedBlock::Control GuidedBlock::take_control(Follower& follower) {
+GuidedBlock::GuidedBlock(LaneBlocks& lanes, std::size_t block, double dt, double* work)
+    : lanes_(lanes), block_(block), dt_(dt), work_(work) {}
+GuidedBlock::~GuidedBlock() = default;
+
+void GuidedBlock::add(Follower& follower) {
   const BatchGuide& guide = *follower.guide;
-  Control control{
-      &follower, {guide.rate, guide.delay, guide.controller->rotors()}, nullptr, {}, {}};
-  control.preview = &preview_of(control);
-  control.pending.resize(control.schedule.state_size());
-  control.memory.resize(guide.controller->state_size());
-  return control;
+  control::ReferencePreview& preview = preview_of(guide);
+  const auto controller = guide.controller->in_lanes(std::max(1 / guide.rate, dt_));
+  if (!controller) {
+    const control::Schedule schedule(guide.rate, guide.delay, guide.controller->rotors());
+    alone_.push_back({&follower, schedule, &preview, std::vector<double>(schedule.state_size()),
+                      std::vector<double>(guide.controller->state_size())});
+    return;
+  }
+  const auto takes = [&](const LaneControls& group) { return group.takes(follower, *controller); };
+  auto group = std::find_if(in_lanes_.begin(), in_lanes_.end(), takes);
+  if (group == in_lanes_.end()) {
+    in_lanes_.emplace_back(follower, controller);
+    group = in_lanes_.end() - 1;
+  }
+  group->add(follower, *controller, preview);
 }
 
-control::ReferencePreview& GuidedBlock::preview_of(const Control& control) {
-  const BatchGuide& guide = *control.follower->guide;
+control::ReferencePreview& GuidedBlock::preview_of(const BatchGuide& guide) {
   for (const Shared& shared : previews_) {
     const BatchGuide& other = *shared.guide;
     if (other.controller == guide.controller && other.reference == guide.reference &&
@@ -58,8 +53,7 @@ control::ReferencePreview& GuidedBlock::preview_of(const Control& control) {
 
 void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n,
                           std::int64_t log_every) {
-  std::vector<Control> controls;
-  for (Follower& follower : followers) controls.push_back(take_control(follower));
+  for (Follower& follower : followers) add(follower);
   std::int64_t step = 0;
   lanes_.show(block_, work_);
   for (Follower& follower : followers) {
@@ -67,14 +61,8 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n,
     note_rates(follower);
   }
   while (step < n) {
-    std::int64_t next = std::min(n, (step / log_every + 1) * log_every);
-    for (Control& control : controls) {
-      if (control.follower->has_left) continue;
-      const auto now = static_cast<double>(step);
-      update(control, now);
-      const double event = control.schedule.next_event(now, dt_, control.pending.data());
-      if (event < static_cast<double>(next)) next = static_cast<std::int64_t>(event);
-    }
+    const auto logged = static_cast<double>(std::min(n, (step / log_every + 1) * log_every));
+    const auto next = static_cast<std::int64_t>(update(static_cast<double>(step), logged));
     for (; step < next; ++step) this->step(followers);
     if (step % log_every != 0) continue;
     for (const Follower& follower : followers) {
@@ -87,12 +75,29 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n,
   }
 }
 
+/// Call the controllers that are due. Returns the next step at which one is due or a command takes
+/// effect, or `next` if that is earlier.
+double GuidedBlock::update(double step, double next) {
+  for (LaneControls& group : in_lanes_) {
+    group.update(
+        step, dt_, work_, [this](Follower& follower) { drop(follower); },
+        [this](Follower& follower, const double* speeds) { take(follower, speeds); });
+    next = std::min(next, group.next_event(step, dt_));
+  }
+  for (Control& control : alone_) {
+    if (control.follower->has_left) continue;
+    update(control, step);
+    next = std::min(next, control.schedule.next_event(step, dt_, control.pending.data()));
+  }
+  return next;
+}
+
 void GuidedBlock::step(std::vector<Follower>& followers) {
   std::int64_t flown[widest_lanes];
   lanes_.step(block_, 1, dt_, work_, flown);
   lanes_.show(block_, work_);
   for (Follower& follower : followers) {
-    if (flown[follower.vehicle % widest_lanes] == 0) {
+    if (flown[follower.lane()] == 0) {
       drop(follower);
     } else {
       note_rates(follower);
@@ -120,55 +125,43 @@ void GuidedBlock::update(Control& control, double step) {
         step, dt_, control.pending.data(),
         [&](double period, double* asked) { command(control, step, period, asked); });
     if (!speeds) return;
-    const std::size_t rotors = follower.guide->controller->rotors();
-    follower.speeds.assign(speeds, speeds + rotors);
-    const bool are_finite =
-        std::all_of(speeds, speeds + rotors, [](double speed) { return std::isfinite(speed); });
-    if (!are_finite) return drop(follower);
-    lanes_.command(follower.vehicle, speeds);
-    follower.commands.add(speeds);
+    take(follower, speeds);
   } catch (const std::exception&) {  // outside the lanes, the error ends the flight
     drop(follower);
   }
 }
 
-void GuidedBlock::command(Control& control, double step, double period, double* speeds) {
-  const Follower& follower = *control.follower;
-  count_call(*follower.guided, [&] {
-    const OdometryErrors& errors = *follower.errors;
-    const messages::Odometry odometry =
-        measure(work_ + follower.vehicle % widest_lanes, errors, follower.seed,
-                follower.draws + step * errors.draws());
-    const control::ReferencePreview::Point& point = control.preview->at(
-        step * dt_, *follower.guide->reference, [&](double* times, std::size_t count) {
-          double at = step;
-          for (std::size_t i = 0; i < count; ++i) {
-            times[i] = at * dt_;
-            at = control.schedule.next_call(at, dt_);
-          }
-        });
-    follower.guide->controller->command(period, odometry, point.wanted, control.memory.data(),
-                                        speeds, point.flat ? &*point.flat : nullptr);
-    return control::Controller::saturated(control.memory.data());
-  });
+/// Command the rotors of a follower.
+void GuidedBlock::take(Follower& follower, const double* speeds) {
+  const std::size_t rotors = follower.guide->controller->rotors();
+  follower.speeds.assign(speeds, speeds + rotors);
+  const bool are_finite =
+      std::all_of(speeds, speeds + rotors, [](double speed) { return std::isfinite(speed); });
+  if (!are_finite) return drop(follower);
+  lanes_.command(follower.vehicle, speeds);
+  follower.commands.add(speeds);
 }
 
-messages::Odometry measure(const double* shown, const OdometryErrors& errors, std::uint64_t seed,
-                           double draws) {
-  messages::Odometry odometry;
-  const auto get = [&](std::size_t row, auto&& numbers) {
-    for (Eigen::Index i = 0; i < numbers.size(); ++i) {
-      numbers[i] = shown[(row + static_cast<std::size_t>(i)) * widest_lanes];
-    }
-  };
-  get(StateRow::position, odometry.position);
-  get(StateRow::orientation, odometry.orientation.coeffs());
-  get(StateRow::velocity, odometry.linear_velocity);
-  get(StateRow::rate, odometry.angular_velocity);
-  if (errors.is_none()) return odometry;
-  double biases[OdometryErrors::biases] = {};
-  errors.apply(odometry, 0, seed, draws, biases);
-  return odometry;
+void GuidedBlock::command(Control& control, double step, double period, double* speeds) {
+  const Follower& follower = *control.follower;
+  const bool is_timed = count_call(*follower.guided);
+  const Stopwatch stopwatch;
+  const OdometryErrors& errors = *follower.errors;
+  const messages::Odometry odometry = measure(work_ + follower.lane(), errors, follower.seed,
+                                              follower.draws + step * errors.draws());
+  const control::ReferencePreview::Point& point = control.preview->at(
+      step * dt_, *follower.guide->reference, [&](double* times, std::size_t count) {
+        double at = step;
+        for (std::size_t i = 0; i < count; ++i) {
+          times[i] = at * dt_;
+          at = control.schedule.next_call(at, dt_);
+        }
+      });
+  double* const memory = control.memory.data();
+  follower.guide->controller->command(period, odometry, point.wanted, memory, speeds,
+                                      point.flat ? &*point.flat : nullptr);
+  follower.guided->saturated += control::Controller::saturated(memory);
+  if (is_timed) follower.guided->seconds.push_back(stopwatch.seconds());
 }
 
 void GuidedBlock::log(const Follower& follower, double step) const {
@@ -203,10 +196,11 @@ void follow_apart(Simulation& simulation, const BatchGuide& guide, const std::st
   };
   try {
     loop.advance(n, [&](double period, double* speeds) {
-      count_call(guided, [&] {
-        controller.command(period, topic, *guide.reference, list_times, speeds);
-        return controller.saturated();
-      });
+      const bool is_timed = count_call(guided);
+      const Stopwatch stopwatch;
+      controller.command(period, topic, *guide.reference, list_times, speeds);
+      guided.saturated += controller.saturated();
+      if (is_timed) guided.seconds.push_back(stopwatch.seconds());
     });
   } catch (...) {
     finish();

@@ -1,21 +1,12 @@
 #pragma once
 
 #include "block_motion.hpp"
+#include "lanes/mask.hpp"
 
 namespace quadcore::batch {
 
-/// All bits are set where a comparison is true.
-template <class T>
-using Mask = laws::BitsOf<T>;
-
-template <class T, class Comparison>
-QUADCORE_LAW Mask<T> mask(const Comparison& comparison) {
-  if constexpr (laws::lanes_of<T> == 1) {
-    return -static_cast<std::int64_t>(comparison);
-  } else {
-    return comparison;
-  }
-}
+using laws::Mask;
+using laws::mask;
 
 /// Result of a step for a pack of vehicles.
 template <class T>

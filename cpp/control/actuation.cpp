@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "actuation_law.hpp"
+#include "numbers.hpp"
 #include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
@@ -27,82 +29,111 @@ const Settings<Lead>& lead_settings() {
 
 }  // namespace
 
+using Row = ActuationRow;
+
+/// Numbers of each rotor, and the time constants.
+struct Actuation::Numbers {
+  std::vector<RotorNumbers<double>> rotors;
+  std::vector<double> lags;  ///< s
+  Lead lead;
+};
+
 const std::vector<TagSpec>& Actuation::table() {
   static const std::vector<TagSpec> all = table_of(lead_settings());
   return all;
 }
 
-Actuation::Actuation(const ModelledVehicle& model, const Values& values)
-    : rotors_(model.rotors), allocation_(model) {
-  Lead lead{};
-  configure(lead, lead_settings(), values);
-  leads_ = lead.lead;
-  lead_time_ = lead.time;
+Actuation::Actuation(const ModelledVehicle& model, const Values& values) : allocation_(model) {
+  auto numbers = std::make_shared<Numbers>();
+  configure(numbers->lead, lead_settings(), values);
+  for (std::size_t i = 0; i < model.rotors.size(); ++i) {
+    const ModelledRotor& rotor = model.rotors[i];
+    const bool leads = numbers->lead.lead && numbers->lead.time < rotor.lag;
+    numbers->rotors.push_back({numbers_of(rotor.axis_F), rotor.spin, rotor.momentum,
+                               rotor.lag > 0 ? 1.0 : 0.0, leads ? 1.0 : 0.0, rotor.slowest,
+                               rotor.fastest, allocation_.rotor(i)});
+    numbers->lags.push_back(rotor.lag);
+  }
+  numbers_ = std::move(numbers);
 }
 
-Actuation::Now Actuation::now(const double* state, double* scratch) const {
-  const double* const modelled = state + kRotors;
-  Now now{state[kBegun] == 0, saturated(state), {}, Vector3d::Zero()};
-  for (std::size_t i = 0; i < rotors_.size(); ++i) {
-    const ModelledRotor& rotor = rotors_[i];
-    now.h_F += rotor.momentum * rotor.spin * modelled[i] * rotor.axis_F;
-    scratch[i] = modelled[i] * modelled[i];
+std::size_t Actuation::state_size(std::size_t rotors) { return Row::count(rotors); }
+
+bool Actuation::saturated(const double* state) { return state[Row::saturated] != 0; }
+
+void Actuation::set_remaining(std::size_t rotor, double left, double* state) const {
+  state[Row::lost(numbers_->rotors.size()) + rotor] = 1 - left;
+}
+
+const double* Actuation::lost(const double* state) const {
+  return state + Row::lost(numbers_->rotors.size());
+}
+
+Actuation::Now Actuation::now(const double* state) const {
+  RotorsNumbers<double> now{};
+  const std::vector<RotorNumbers<double>>& rotors = numbers_->rotors;
+  for (std::size_t i = 0; i < rotors.size(); ++i) {
+    add_rotor(rotors[i], state[Row::speeds + i], 1 - lost(state)[i], now);
   }
-  now.exerted = allocation_.exerted(scratch, lost(state));
-  return now;
+  return {state[Row::begun] == 0, saturated(state), demand_of(now.exerted), vector_of(now.h_F)};
 }
 
 void Actuation::command(double period, const Demand& demand, double* state, double* speeds) const {
+  const std::vector<RotorNumbers<double>>& rotors = numbers_->rotors;
   const bool met = allocation_.allocate(demand, speeds, lost(state));
-  for (std::size_t i = 0; i < rotors_.size(); ++i) speeds[i] = std::sqrt(speeds[i]);
-  const bool reached = lead(period, state[kBegun] == 0, state, speeds);
-  for (std::size_t i = 0; i < rotors_.size(); ++i) speeds[i] *= rotors_[i].spin;
-  state[kBegun] = 1;
-  state[kSaturated] = met && reached ? 0 : 1;
+  for (std::size_t i = 0; i < rotors.size(); ++i) speeds[i] = std::sqrt(speeds[i]);
+  const bool reached = lead(period, state, speeds);
+  for (std::size_t i = 0; i < rotors.size(); ++i) speeds[i] *= rotors[i].spin;
+  state[Row::begun] = 1;
+  state[Row::saturated] = met && reached ? 0 : 1;
+}
+
+std::vector<double> Actuation::list_numbers() const {
+  std::vector<double> numbers;
+  for (const RotorNumbers<double>& rotor : numbers_->rotors) {
+    const std::vector<double> of_rotor = control::list_numbers(rotor);
+    numbers.insert(numbers.end(), of_rotor.begin(), of_rotor.end());
+  }
+  return numbers;
 }
 
 bool Actuation::can_control_yaw(double thrust, const double* state) const {
   const double* const lost_now = lost(state);
-  const bool are_whole =
-      std::all_of(lost_now, lost_now + rotors_.size(), [](double share) { return share == 0; });
+  const bool are_whole = std::all_of(lost_now, lost_now + numbers_->rotors.size(),
+                                     [](double share) { return share == 0; });
   return are_whole || allocation_.can_control_yaw(thrust, lost_now);
 }
 
-/// Turn wanted speeds into commands and update the modelled speeds. Rotors approach a command with
-/// their lag tau, dw/dt = (command - w)/tau; the commands make them approach the wanted speed with
-/// lead_time. Returns whether the commands are within the limits.
-bool Actuation::lead(double period, bool begins, double* state, double* speeds) const {
-  constexpr double rounding = 1e-6;  // rad/s
-  double* const modelled = state + kRotors;
+/// Turn wanted speeds into commands and update the modelled speeds. Returns whether the commands
+/// are within the limits.
+bool Actuation::lead(double period, double* state, double* speeds) const {
+  const std::vector<RotorNumbers<double>>& rotors = numbers_->rotors;
+  double* const modelled = state + Row::speeds;
+  if (period != state[Row::period]) find_shares(period, state);
+  const double* const shares = state + Row::shares(rotors.size());
   bool all = true;
-  if (period != state[kPeriod]) find_shares(period, state);
-  const double wanted_share = state[kWantedShare];
-  const double* const shares = lost(state) + rotors_.size();
-  for (std::size_t i = 0; i < rotors_.size(); ++i) {
-    const ModelledRotor& rotor = rotors_[i];
-    if (begins) modelled[i] = speeds[i];
-    if (rotor.lag == 0 || lost(state)[i] == 1) {
-      modelled[i] = speeds[i];
-      continue;
-    }
-    if (leads_ && lead_time_ < rotor.lag) {
-      const double ahead = modelled[i] + wanted_share / shares[i] * (speeds[i] - modelled[i]);
-      speeds[i] = std::clamp(ahead, rotor.slowest, rotor.fastest);
-      all &= std::abs(speeds[i] - ahead) <= rounding;
-    }
-    modelled[i] += shares[i] * (speeds[i] - modelled[i]);
+  for (std::size_t i = 0; i < rotors.size(); ++i) {
+    const bool stands = lost(state)[i] == 1;
+    if (stands || state[Row::begun] == 0) modelled[i] = speeds[i];
+    if (stands) continue;
+    const LedNumbers<double> led =
+        control::lead(rotors[i], speeds[i], modelled[i], state[Row::wanted_share], shares[i]);
+    all &= led.excess <= largest_excess;
+    speeds[i] = led.command;
+    modelled[i] = led.modelled;
   }
   return all;
 }
 
 void Actuation::find_shares(double period, double* state) const {
-  double* const shares = state + kRotors + 2 * rotors_.size();
-  for (std::size_t i = 0; i < rotors_.size(); ++i) {
-    const double lag = rotors_[i].lag;
+  const Lead& lead = numbers_->lead;
+  double* const shares = state + Row::shares(numbers_->rotors.size());
+  for (std::size_t i = 0; i < numbers_->rotors.size(); ++i) {
+    const double lag = numbers_->lags[i];
     shares[i] = lag > 0 ? 1 - elementary::exp(-period / lag) : 1;
   }
-  state[kWantedShare] = leads_ ? 1 - elementary::exp(-period / lead_time_) : 0;
-  state[kPeriod] = period;
+  state[Row::wanted_share] = lead.lead ? 1 - elementary::exp(-period / lead.time) : 0;
+  state[Row::period] = period;
 }
 
 }  // namespace quadcore::control

@@ -6,19 +6,20 @@
 
 namespace quadcore::control {
 
-/// The parts of AirResistance that the force depends on, as plain numbers.
+/// The parts of AirResistance that the force depends on, as plain numbers or packs.
+template <class N>
 struct AirNumbers {
-  double linear[9];      ///< AirResistance::linear of force and velocity, by columns
-  double components[3];  ///< AirResistance::of_components
-  double quadratic;      ///< AirResistance::quadratic
+  N linear[9];      ///< AirResistance::linear of force and velocity, by columns
+  N components[3];  ///< AirResistance::of_components
+  N quadratic;      ///< AirResistance::quadratic
 };
 
 /// Return the aerodynamic force in W for a velocity of the centre of mass in F [N].
-template <class T>
-QUADCORE_LAW laws::Vec3<T> air_force_W(const AirNumbers& air, const laws::Matrix3<T>& R_WF,
+template <class N, class T>
+QUADCORE_LAW laws::Vec3<T> air_force_W(const AirNumbers<N>& air, const laws::Matrix3<T>& R_WF,
                                        const laws::Vec3<T>& v_F) {
   const laws::Vec3<T> v_W = R_WF * v_F;
-  const double *l = air.linear, *c = air.components;
+  const N *l = air.linear, *c = air.components;
   const auto row = [&](std::size_t i) {
     return l[i] * v_F.x + (l[i + 3] * v_F.y + l[i + 6] * v_F.z);
   };

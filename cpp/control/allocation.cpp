@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "actuation_law.hpp"
+#include "numbers.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 
@@ -37,15 +39,23 @@ double left_of(const VectorXd& numbers, const double* lost) {
 
 }  // namespace
 
+/// Numbers of each rotor.
+struct Allocation::Numbers {
+  std::vector<AllocatedRotor<double>> rotors;
+};
+
+const AllocatedRotor<double>& Allocation::rotor(std::size_t i) const { return numbers_->rotors[i]; }
+
 Allocation::Allocation(const ModelledVehicle& model) {
   const Eigen::Index n = model.effectiveness.cols();
-  effect_ = model.effectiveness.bottomRows<4>();  // z, then the torques
+  // Force along z, then the torques.
+  const Eigen::Matrix<double, 4, Eigen::Dynamic> effect = model.effectiveness.bottomRows<4>();
   inverse_.resize(n, 4);
   // Scaled such that thrust and torques have the same magnitude, which makes the rank well defined.
-  size_ = effect_.rowwise().norm();
+  size_ = effect.rowwise().norm();
   const bool spans = n >= 4 && (size_.array() > 0).all();
   if (spans) {
-    scaled_ = size_.cwiseInverse().asDiagonal() * effect_;
+    scaled_ = size_.cwiseInverse().asDiagonal() * effect;
     const Eigen::Matrix4d squared = scaled_ * scaled_.transpose();
     const Eigen::Vector4d singular = squared.jacobiSvd().singularValues();
     if (singular[3] > 1e-9 * singular[0]) {
@@ -59,6 +69,16 @@ Allocation::Allocation(const ModelledVehicle& model) {
       }
       nothing_.setZero(n);
       find_facets();
+      auto numbers = std::make_shared<Numbers>();
+      for (Eigen::Index i = 0; i < n; ++i) {
+        AllocatedRotor<double> rotor{least_[i], most_[i], {}, {}};
+        for (Eigen::Index k = 0; k < 4; ++k) {
+          rotor.inverse[k] = inverse_(i, k);
+          rotor.effect[k] = effect(k, i);
+        }
+        numbers->rotors.push_back(rotor);
+      }
+      numbers_ = std::move(numbers);
       return;
     }
   }
@@ -105,18 +125,10 @@ void Allocation::add_facets(std::vector<Facets>& facets, Eigen::Vector4d scaled_
 bool Allocation::allocate(const Demand& demand, double* squares, const double* lost) const {
   const Eigen::Index n = inverse_.rows();
   if (!lost) lost = nothing_.data();
+  const DemandNumbers<double> wanted{demand.thrust, numbers_of(demand.torque_F)};
+  for (std::size_t i = 0; i < rotors(); ++i) squares[i] = square_for(rotor(i), wanted);
+  bool met = fits(squares, lost);
   Eigen::Map<VectorXd> u(squares, n);
-  const auto fits = [&] {
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (!(u[i] >= (1 - lost[i]) * least_[i] && u[i] <= (1 - lost[i]) * most_[i])) return false;
-    }
-    return true;
-  };
-  // By columns, because the summation order of a matrix product depends on the memory alignment of
-  // the caller's numbers.
-  u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
-  u += demand.torque_F.z() * inverse_.col(3) + demand.thrust * inverse_.col(0);
-  bool met = fits();
   Eigen::Vector4d whole;
   whole << demand.thrust, demand.torque_F;
   if (!met && n > 4 && is_within(whole, lost)) {
@@ -128,7 +140,7 @@ bool Allocation::allocate(const Demand& demand, double* squares, const double* l
     u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
     u = share.roll_pitch * u + share.thrust * inverse_.col(0);
     u += share.yaw * inverse_.col(3);
-    if (n > 4 && !fits()) {
+    if (n > 4 && !fits(squares, lost)) {
       whole << share.thrust, share.roll_pitch * demand.torque_F;
       whole[3] = share.yaw;
       redistribute(whole, squares, lost);
@@ -140,6 +152,13 @@ bool Allocation::allocate(const Demand& demand, double* squares, const double* l
     u[i] = left > 0 ? std::clamp(u[i] / left, least_[i], most_[i]) : least_[i];
   }
   return met;
+}
+
+bool Allocation::fits(const double* squares, const double* lost) const {
+  for (std::size_t i = 0; i < rotors(); ++i) {
+    if (!is_allowed(rotor(i), squares[i], 1 - lost[i])) return false;
+  }
+  return true;
 }
 
 bool Allocation::is_within(const Eigen::Vector4d& demand, const double* lost) const {
@@ -263,11 +282,9 @@ void Allocation::redistribute(const Eigen::Vector4d& demand, double* squares,
 
 Demand Allocation::exerted(const double* squares, const double* lost) const {
   if (!lost) lost = nothing_.data();
-  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  for (Eigen::Index i = 0; i < effect_.cols(); ++i) {
-    sum += (1 - lost[i]) * squares[i] * effect_.col(i);
-  }
-  return {sum[0], sum.tail<3>()};
+  DemandNumbers<double> sum{};
+  for (std::size_t i = 0; i < rotors(); ++i) add_wrench(rotor(i), squares[i], 1 - lost[i], sum);
+  return demand_of(sum);
 }
 
 }  // namespace quadcore::control

@@ -1,5 +1,7 @@
 #include "quadcore/control/controller.hpp"
 
+#include "lane_law.hpp"
+
 namespace quadcore::control {
 
 std::vector<TagSpec> Controller::table(const std::string& law) {
@@ -40,11 +42,19 @@ void Controller::command(double period, const Odometry& now, const Reference& wa
 
 void Controller::follow(double period, const Odometry& now, const Reference& wanted,
                         const FlatState* flat, double* state, double* speeds) const {
-  const Actuation::Now rotors_now = actuation_.now(state, speeds);
+  const Actuation::Now rotors_now = actuation_.now(state);
   const LawInput input{period,         rotors_now.begins,   now, wanted, flat, rotors_now.exerted,
                        rotors_now.h_F, rotors_now.saturated};
   const Demand demand = law_->demand(input, state + Actuation::state_size(rotors()));
   actuation_.command(period, demand, state, speeds);
+}
+
+std::shared_ptr<const LaneController> Controller::in_lanes(double period) const {
+  const std::shared_ptr<const LaneLaw> law = law_->in_lanes(period);
+  if (!law) return nullptr;
+  LaneController made{*law, rotors(), actuation_.list_numbers(), std::vector<double>(state_size())};
+  actuation_.find_shares(period, made.state.data());
+  return std::make_shared<LaneController>(std::move(made));
 }
 
 }  // namespace quadcore::control

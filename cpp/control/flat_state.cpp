@@ -1,6 +1,7 @@
 #include "quadcore/control/flat_state.hpp"
 
 #include "flat_table.hpp"
+#include "numbers.hpp"
 #include "quadcore/plugin/elementary.hpp"
 #include "quadcore/plugin/error.hpp"
 
@@ -24,18 +25,10 @@ Vector3d across_yaw(double yaw) {
   return {-s, c, 0};
 }
 
-Matrix3d attitude_of(const Vector3d& z_W, const Vector3d& across_W) {
-  const Vector3d z = z_W.normalized();
-  const Vector3d x = across_W.cross(z).normalized();
-  Matrix3d R;
-  R << x, z.cross(x), z;
-  return R;
-}
-
 Vector3d torque_for(const ModelledVehicle& model, const Vector3d& dw_WF_F, const Vector3d& w_WF_F,
                     const Vector3d& h_F, const Vector3d& tau_air_F) {
-  const Matrix3d& I = model.inertia_Ccm_F;
-  return I * dw_WF_F + w_WF_F.cross(I * w_WF_F + h_F) - tau_air_F;
+  return vector_of(torque_for(numbers_of(model.inertia_Ccm_F), numbers_of(dw_WF_F),
+                              numbers_of(w_WF_F), numbers_of(h_F), numbers_of(tau_air_F)));
 }
 
 }  // namespace quadcore::control

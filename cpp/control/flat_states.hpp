@@ -35,7 +35,7 @@ struct FlatVehicle {
   double mass, gravity;
   bool with_drag;
   double mean_drag;  ///< along x and y of F [N s/m]
-  AirNumbers air;
+  AirNumbers<double> air;
   bool is_offset;  ///< whether the centre of mass differs from the origin of F
   double p_FCcm_F[3];
 };

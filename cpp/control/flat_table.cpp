@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lanes/for_each_width.hpp"
+#include "numbers.hpp"
 #include "quadcore/lane_width.hpp"
 #include "quadcore/plugin/elementary.hpp"
 
@@ -22,16 +23,6 @@ FlatVehicle describe_flatly(const ModelledVehicle& model, bool with_drag) {
 }
 
 }  // namespace
-
-AirNumbers numbers_of(const AirResistance& air) {
-  AirNumbers numbers{};
-  for (int column = 0; column < 3; ++column) {
-    for (int row = 0; row < 3; ++row) numbers.linear[3 * column + row] = air.linear(row, column);
-  }
-  std::copy_n(air.of_components.data(), 3, numbers.components);
-  numbers.quadratic = air.quadratic;
-  return numbers;
-}
 
 FlatTable::FlatTable(const ModelledVehicle& model, bool with_drag)
     : vehicle_(describe_flatly(model, with_drag)) {}

@@ -7,9 +7,6 @@
 
 namespace quadcore::control {
 
-/// Return the parts of an air resistance that the force depends on.
-AirNumbers numbers_of(const AirResistance& air);
-
 /// Flat states of a vehicle for up to widest_lanes references at once.
 class FlatTable {
  public:

@@ -8,10 +8,14 @@ const Settings<Geometric::Gains>& Geometric::settings() {
 }
 
 Demand Geometric::demand(const LawInput& input, double* memory) const {
-  const std::optional<FlatState> flat = tracking_.fed_forward(input);
-  const Vector3d f_W = tracking_.force_W(input, flat, tracking_.acceleration(input, memory));
-  const Vector3d z_W = input.now.orientation * Vector3d::UnitZ();
-  return {f_W.dot(z_W), tracking_.torque(input, tracking_.angular_acceleration(input, flat, f_W))};
+  return tracking_.demand(input, [&](const TrackingLaw<double>& law) {
+    return demand_geometrically(law, memory_of<GeometricMemory>(memory));
+  });
+}
+
+std::shared_ptr<const LaneLaw> Geometric::in_lanes(double /*period*/) const {
+  return std::make_shared<LaneLaw>(
+      LaneLaw{LawKind::geometric, tracking_.switches(), list_numbers(tracking_.numbers())});
 }
 
 }  // namespace quadcore::control

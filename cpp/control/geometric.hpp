@@ -13,9 +13,10 @@ class Geometric final : public ControlLaw {
 
   Geometric(const ModelledVehicle& model, const Gains& gains) : tracking_(model, gains) {}
 
-  static constexpr std::size_t memory_size = 3;
+  static constexpr std::size_t memory_size = size_of<GeometricMemory>;
   Feeds feeds() const override { return tracking_.feeds(); }
   Demand demand(const LawInput& input, double* memory) const override;
+  std::shared_ptr<const LaneLaw> in_lanes(double period) const override;
 
  private:
   Tracking tracking_;

@@ -33,45 +33,18 @@ const Settings<Indi::Gains>& Indi::settings() {
 }
 
 Demand Indi::demand(const LawInput& input, double* memory) const {
-  const ModelledVehicle& model = tracking_.model();
-  const Odometry& now = input.now;
-  const Vector3d z_W = now.orientation * Vector3d::UnitZ();
-  const std::optional<FlatState> flat = tracking_.fed_forward(input);
-  const Vector3d a_W = tracking_.acceleration(input, memory + kIntegral);
-  const auto filtered = [memory](std::size_t at) { return Eigen::Map<Vector3d>(memory + at); };
+  const double share = filter_share(input.period);
+  return tracking_.demand(input, [&](const TrackingLaw<double>& law) {
+    return demand_incrementally(law, share, memory_of<IndiMemory>(memory));
+  });
+}
 
-  const double share = 1 - elementary::exp(-filter_ * input.period);
-  if (input.begins) {  // start with modelled values, including the accelerations, before the first
-                       // measurement
-    const Vector3d f_W = tracking_.force_W(input, flat, a_W);
-    const Vector3d dw_F = tracking_.angular_acceleration(input, flat, f_W);
-    const Demand demand{f_W.dot(z_W), tracking_.torque(input, dw_F)};
-    const double behind = input.period * (1 / share - 1);  // lag of a filter on a ramp
-    filtered(kVelocity) = now.linear_velocity - behind * a_W;
-    filtered(kRate) = now.angular_velocity - behind * dw_F;
-    filtered(kForce) = demand.thrust * z_W;
-    filtered(kTorque) = demand.torque_F;
-    return demand;
-  }
-  // The same filter for all signals, so that the compared values have the same delay.
-  const auto follow = [&](std::size_t at, const Vector3d& x) -> Vector3d {
-    const Vector3d change = share * (x - filtered(at));
-    filtered(at) += change;
-    return change / input.period;
-  };
-  const Vector3d measured_a_W = follow(kVelocity, now.linear_velocity);
-  const Vector3d measured_dw_F = follow(kRate, now.angular_velocity);
-  follow(kForce, input.exerted.thrust * z_W);
-  follow(kTorque, input.exerted.torque_F);
+double Indi::filter_share(double period) const { return 1 - elementary::exp(-filter_ * period); }
 
-  // Both accelerations refer to the origin of F; the force already includes the relative
-  // acceleration of the centre of mass.
-  const Vector3d f_W = filtered(kForce) + model.mass * (a_W - measured_a_W);
-  const Vector3d dw_F = tracking_.angular_acceleration(input, flat, f_W);
-  Demand demand{f_W.dot(z_W), tracking_.torque(input, dw_F)};
-  const Vector3d incremental_F = filtered(kTorque) + model.inertia_Ccm_F * (dw_F - measured_dw_F);
-  demand.torque_F.head<2>() = incremental_F.head<2>();
-  return demand;
+std::shared_ptr<const LaneLaw> Indi::in_lanes(double period) const {
+  const IndiNumbers<double> numbers{tracking_.numbers(), filter_share(period)};
+  return std::make_shared<LaneLaw>(
+      LaneLaw{LawKind::indi, tracking_.switches(), list_numbers(numbers)});
 }
 
 }  // namespace quadcore::control

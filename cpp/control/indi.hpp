@@ -14,17 +14,18 @@ class Indi final : public ControlLaw {
     double filter;
   };
   static const Settings<Gains>& settings();
-  static constexpr std::size_t memory_size = 15;
+  static constexpr std::size_t memory_size = size_of<IndiMemory>;
 
   Indi(const ModelledVehicle& model, const Gains& gains)
       : tracking_(model, gains), filter_(gains.filter) {}
 
   Feeds feeds() const override { return tracking_.feeds(); }
   Demand demand(const LawInput& input, double* memory) const override;
+  std::shared_ptr<const LaneLaw> in_lanes(double period) const override;
 
  private:
-  /// The integral of the position error, then the filtered signals.
-  enum : std::size_t { kIntegral, kVelocity = 3, kRate = 6, kForce = 9, kTorque = 12 };
+  /// Return the fraction of a change that the filters pass within a period.
+  double filter_share(double period) const;
 
   Tracking tracking_;
   double filter_;

@@ -61,7 +61,7 @@ void InnerLoop::command(double period, const Odometry&, const WrenchThrust& want
 
 void InnerLoop::command(double period, const Odometry& now, double thrust, const Vector3d& dw_WF_F,
                         double* state, double* speeds) const {
-  const Actuation::Now rotors_now = actuation_.now(state, speeds);
+  const Actuation::Now rotors_now = actuation_.now(state);
   const Demand demand{thrust, loop_.torque(now, rotors_now.h_F, dw_WF_F)};
   actuation_.command(period, demand, state, speeds);
 }

@@ -1,8 +1,8 @@
 #include "lqr.hpp"
 
+#include <algorithm>
 #include <cmath>
 
-#include "quadcore/control/flat_state.hpp"
 #include "riccati.hpp"
 
 namespace quadcore::control {
@@ -64,71 +64,53 @@ const Settings<Lqr::Gains>& Lqr::settings() {
   return all;
 }
 
-Lqr::Lqr(const ModelledVehicle& model, const Gains& g) : model_(model), gains_(g) {
+Lqr::Lqr(const ModelledVehicle& model, const Gains& g)
+    : model_(model), switches_{g.feed_forward, g.flat_rates, g.integral, g.drag, g.gyroscopic} {
   Eigen::Matrix<double, 5, 1> factors, weights;
   factors << 1, 1, model.gravity, 1, 0;  // gravity times the tilt accelerates the vehicle
   weights << g.q_integral, g.q_position, g.q_velocity, g.q_tilt, g.q_rate;
-  level_ = chain<5>(factors, weights, g.r_tilt, g.integral);
-  height_ = chain<3>(Vector3d(1, 1, 0), {g.q_height_integral, g.q_height, g.q_climb}, g.r_thrust,
-                     g.integral);
+  const auto level = chain<5>(factors, weights, g.r_tilt, g.integral);
+  const auto height = chain<3>(Vector3d(1, 1, 0), {g.q_height_integral, g.q_height, g.q_climb},
+                               g.r_thrust, g.integral);
   // Yaw has no integral.
   const Eigen::RowVectorXd yaw =
       optimal_gain((Eigen::Matrix2d() << 0, 1, 0, 0).finished(), Eigen::Vector2d(0, 1),
                    Eigen::Vector2d(g.q_yaw, g.q_yaw_rate), g.r_yaw);
-  yaw_ = yaw;
+  std::copy_n(level.data(), 5, numbers_.level);
+  std::copy_n(height.data(), 3, numbers_.height);
+  std::copy_n(yaw.data(), 2, numbers_.yaw);
+  numbers_.sum_limit = g.sum_limit;
+  numbers_.vehicle = numbers_of(model);
+}
+
+ControlLaw::Feeds Lqr::feeds() const {
+  return switches_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
 }
 
 Demand Lqr::demand(const LawInput& input, double* memory) const {
-  const Odometry& now = input.now;
-  const Reference& wanted = input.wanted;
-  FlatState flat = input.flat ? *input.flat : flat_state(wanted, model_, gains_.drag);
-  if (!gains_.feed_forward) {
-    Reference unmoved = wanted;
-    unmoved.acceleration.setZero();
-    unmoved.jerk.setZero();
-    unmoved.snap.setZero();
-    const FlatState level = flat_state(unmoved, model_, gains_.drag);
-    flat.R_WF = level.R_WF;
-    flat.thrust = level.thrust;
-  }
+  if (switches_.feed_forward) return follow(input, memory);
+  Reference unmoved = input.wanted;
+  unmoved.acceleration.setZero();
+  unmoved.jerk.setZero();
+  unmoved.snap.setZero();
+  const FlatState level = flat_state(unmoved, model_, switches_.drag);
+  FlatState flat = input.flat ? *input.flat : flat_state(input.wanted, model_, switches_.drag);
+  flat.R_WF = level.R_WF;
+  flat.thrust = level.thrust;
+  LawInput levelled = input;
+  levelled.flat = &flat;
+  return follow(levelled, memory);
+}
 
-  const Vector3d error_W = wanted.position - now.position;
-  Eigen::Map<Vector3d> integral(memory);
-  for (int i = 0; i < 3; ++i) {
-    const double sum = integral[i] + input.period * error_W[i];
-    const bool grows = std::abs(sum) > std::abs(integral[i]);
-    const bool fits = std::abs(sum) <= gains_.sum_limit && !input.saturated;
-    if (!grows || fits) integral[i] = sum;
-  }
-  // In the axes D of the flat state, around which the vehicle is linearised.
-  const Matrix3d R_DW = flat.R_WF.transpose();
-  const Vector3d sum_D = R_DW * integral, error_D = R_DW * error_W,
-                 slip_D = R_DW * (wanted.velocity - now.linear_velocity);
-  const Matrix3d R_FD = now.orientation.conjugate().toRotationMatrix() * flat.R_WF;
-  const Quaterniond q_FD(R_FD);
-  const Vector3d turn_F = (q_FD.w() < 0 ? -2 : 2) * q_FD.vec();
-  const Vector3d wanted_w_F = (gains_.flat_rates ? 1 : 0) * (R_FD * flat.w_WF_F);
-  const Vector3d slip_w_F = wanted_w_F - now.angular_velocity;
+Demand Lqr::follow(const LawInput& input, double* memory) const {
+  return call_with_numbers(input, feeds(), model_, [&](const LawNumbers<double>& numbers) {
+    return demand_optimally(switches_, numbers_, numbers, memory_of<LqrMemory>(memory));
+  });
+}
 
-  const auto level = [&](double sum, double error, double slip, double tilt, double rate) {
-    return level_[0] * sum + level_[1] * error + level_[2] * slip + level_[3] * tilt +
-           level_[4] * rate;
-  };
-  // Positive pitch accelerates along x, positive roll along -y.
-  Vector3d dw_F(-level(sum_D.y(), error_D.y(), slip_D.y(), -turn_F.x(), -slip_w_F.x()),
-                level(sum_D.x(), error_D.x(), slip_D.x(), turn_F.y(), slip_w_F.y()),
-                yaw_[0] * turn_F.z() + yaw_[1] * slip_w_F.z());
-  if (gains_.flat_rates) dw_F += R_FD * flat.dw_WF_F - now.angular_velocity.cross(wanted_w_F);
-  const double climb = height_.dot(Eigen::RowVector3d(sum_D.z(), error_D.z(), slip_D.z()));
-
-  Vector3d tau_air_F = Vector3d::Zero();
-  if (gains_.drag) {
-    tau_air_F = model_.air_torque_F(now.orientation.conjugate() * now.linear_velocity,
-                                    now.angular_velocity);
-  }
-  const Vector3d h_F = gains_.gyroscopic ? input.h_F : Vector3d(Vector3d::Zero());
-  return {flat.thrust + model_.mass * climb,
-          torque_for(model_, dw_F, now.angular_velocity, h_F, tau_air_F)};
+std::shared_ptr<const LaneLaw> Lqr::in_lanes(double /*period*/) const {
+  if (!switches_.feed_forward) return nullptr;
+  return std::make_shared<LaneLaw>(LaneLaw{LawKind::lqr, switches_, list_numbers(numbers_)});
 }
 
 }  // namespace quadcore::control

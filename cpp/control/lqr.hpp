@@ -1,6 +1,7 @@
 #pragma once
 
-#include "quadcore/control/control_law.hpp"
+#include "lqr_law.hpp"
+#include "numbers.hpp"
 
 namespace quadcore::control {
 
@@ -21,18 +22,17 @@ class Lqr final : public ControlLaw {
 
   Lqr(const ModelledVehicle& model, const Gains& gains);
 
-  static constexpr std::size_t memory_size = 3;
-  Feeds feeds() const override {
-    return gains_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
-  }
+  static constexpr std::size_t memory_size = size_of<LqrMemory>;
+  Feeds feeds() const override;
   Demand demand(const LawInput& input, double* memory) const override;
+  std::shared_ptr<const LaneLaw> in_lanes(double period) const override;
 
  private:
+  Demand follow(const LawInput& input, double* memory) const;
+
   ModelledVehicle model_;
-  Gains gains_;
-  Eigen::Matrix<double, 1, 5> level_;   ///< gains of integral, position, velocity, tilt and rate
-  Eigen::Matrix<double, 1, 3> height_;  ///< gains of integral, position and velocity
-  Eigen::Matrix<double, 1, 2> yaw_;     ///< gains of yaw and its rate
+  LawSwitches switches_;
+  LqrNumbers<double> numbers_;
 };
 
 }  // namespace quadcore::control

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "flat_table.hpp"
+#include "numbers.hpp"
 #include "quadcore/control/rotors.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
@@ -112,15 +112,16 @@ ModelledVehicle ModelledVehicle::of(const VehicleDescription& vehicle, std::vect
 
 Vector3d ModelledVehicle::air_force_W(const Matrix3d& R_WF, const Vector3d& v_WF_W,
                                       const Vector3d& w_WF_F) const {
-  const Vector3d v_F = v_WCcm_F(R_WF.transpose() * v_WF_W, w_WF_F);
-  const laws::Vec3<double> f_W = control::air_force_W<double>(
-      numbers_of(air), laws::matrix(R_WF.data()), laws::vec(v_F.data()));
-  return {f_W.x, f_W.y, f_W.z};
+  const VehicleNumbers<double> vehicle = numbers_of(*this);
+  const Matrix3<double> R = numbers_of(R_WF);
+  const Vec3<double> v_F = laws::inversely(R, numbers_of(v_WF_W));
+  return vector_of(
+      control::air_force_W(vehicle.air, R, v_WCcm_F(vehicle, v_F, numbers_of(w_WF_F))));
 }
 
 Vector3d ModelledVehicle::air_torque_F(const Vector3d& v_WF_F, const Vector3d& w_WF_F) const {
-  return -(air.linear.bottomLeftCorner<3, 3>() * v_WCcm_F(v_WF_F, w_WF_F) +
-           air.linear.bottomRightCorner<3, 3>() * w_WF_F);
+  return vector_of(
+      control::air_torque_F(numbers_of(*this), numbers_of(v_WF_F), numbers_of(w_WF_F)));
 }
 
 }  // namespace quadcore::control

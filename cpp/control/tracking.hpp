@@ -1,11 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <utility>
 
 #include "attitude_settings.hpp"
-#include "quadcore/control/control_law.hpp"
-#include "quadcore/control/flat_state.hpp"
+#include "numbers.hpp"
+#include "tracking_law.hpp"
 
 namespace quadcore::control {
 
@@ -45,33 +44,27 @@ Settings<G> with_tracking(Settings<G> settings) {
   return with_attitude<G>(std::move(settings));
 }
 
+/// The gains as numbers for the control laws on SE(3).
 class Tracking {
  public:
   Tracking(const ModelledVehicle& model, const TrackingGains& gains);
 
-  const ModelledVehicle& model() const { return attitude_.model(); }
-
+  const LawSwitches& switches() const { return switches_; }
+  const TrackingNumbers<double>& numbers() const { return numbers_; }
   /// See ControlLaw::feeds().
   ControlLaw::Feeds feeds() const;
-  /// Return the reference's flat state if it is fed forward.
-  std::optional<FlatState> fed_forward(const LawInput& input) const;
-  /// Return the acceleration that corrects position and velocity errors, in W [m/s^2].
-  /// \param integral  three memory values [m s]
-  Vector3d acceleration(const LawInput& input, double* integral) const;
-  /// Return the force of the rotors for an acceleration of the origin of F, in W [N].
-  Vector3d force_W(const LawInput& input, const std::optional<FlatState>& flat,
-                   const Vector3d& a_WF_W) const;
-  /// Return the angular acceleration that rotates z of F to a direction and x to the yaw, in F
-  /// [rad/s^2].
-  Vector3d angular_acceleration(const LawInput& input, const std::optional<FlatState>& flat,
-                                const Vector3d& z_W) const;
-  /// Return the torque of the rotors for an angular acceleration, in F [N m].
-  Vector3d torque(const LawInput& input, const Vector3d& dw_WF_F) const;
+  /// Return law(TrackingLaw), a demand.
+  template <class Law>
+  Demand demand(const LawInput& input, const Law& law) const {
+    return call_with_numbers(input, feeds(), model_, [&](const LawNumbers<double>& numbers) {
+      return law(TrackingLaw<double>{switches_, numbers_, numbers});
+    });
+  }
 
  private:
-  AttitudeLoop attitude_;
-  TrackingGains gains_;
-  Vector3d position_p_, position_i_, position_d_;
+  ModelledVehicle model_;
+  LawSwitches switches_;
+  TrackingNumbers<double> numbers_;
 };
 
 }  // namespace quadcore::control

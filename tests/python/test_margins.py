@@ -15,6 +15,7 @@ from vehicles import plugin, vehicle
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.control import controllers
+from quadcore.studies.evaluate import evaluate as evaluation
 from quadcore.studies.evaluate.margins import (
     ENDS,
     NOT_DECAYED,
@@ -40,6 +41,32 @@ def test_margins_are_found(capsys):
     assert first["rms_at_500_Hz"] < first["rms_at_25_Hz"] or np.isnan(first["rms_at_25_Hz"])
     assert own["controller"] == "<lambda>"
     assert np.isnan(own["box_worst"])
+
+
+def test_flights_on_a_batch_give_the_margins_of_single_flights(monkeypatch, tmp_path):
+    options = {
+        "duration": 2,
+        "margins": True,
+        "processes": 1,
+        "parameters": {"odometry.positionNoise": 1e-6},
+    }
+    notes = tmp_path / "notes"
+    fly_group = evaluation.fly_group
+
+    def note(*arguments):
+        outcomes = fly_group(*arguments)
+        with notes.open("a") as file:  # in another process
+            file.write(f"{outcomes is not None} {len(arguments[0])}\n")
+        return outcomes
+
+    monkeypatch.setattr(evaluation, "fly_group", note)
+    together = evaluate("geometric", "circle", **options)
+    grouped = [line.split() for line in notes.read_text().splitlines()]
+    assert all(flew == "True" for flew, _ in grouped)
+    assert sum(int(count) for _, count in grouped) > 10
+    monkeypatch.setattr(evaluation, "fly_group", lambda *arguments: None)
+    alone = evaluate("geometric", "circle", **options)
+    np.testing.assert_equal(together.margins, alone.margins)
 
 
 class Own:

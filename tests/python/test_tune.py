@@ -13,6 +13,7 @@ import yaml
 import quadcore as qc
 from quadcore.cli import main, terminal
 from quadcore.control import gains
+from quadcore.studies.tune import problem
 
 pytest.importorskip("cma")
 
@@ -48,6 +49,28 @@ def test_gains_ten_times_too_small_become_gains_that_fly_what_was_held_out(found
         assert largest(controller, reference) < 0.5 * largest(tenth(), reference)
     assert set(found.held_out) == {"circle", "eight"}
     assert found.error < 0.7 * found.start
+
+
+def test_flights_on_a_batch_give_the_results_of_single_flights(monkeypatch, tmp_path):
+    options = {"budget": 3, "seed": 5, "processes": 1, "seeds": 2, **SHORT, "duration": 2.0}
+    options["parameters"] = {"odometry.positionNoise": 0.002}
+    notes = tmp_path / "notes"
+    fly_group = problem.fly_group
+
+    def note(flights, limit):
+        records = fly_group(flights, limit)
+        with notes.open("a") as file:  # in another process
+            file.write(f"{records is not None} {len(flights)}\n")
+        return records
+
+    monkeypatch.setattr(problem, "fly_group", note)
+    together = qc.tune(tenth(), **options)
+    grouped = [line.split() for line in notes.read_text().splitlines()]
+    assert all(flew == "True" for flew, _ in grouped)
+    assert sum(int(count) for _, count in grouped) > 10
+    monkeypatch.setattr(problem, "fly_group", lambda flights, limit: None)
+    alone = qc.tune(tenth(), **options)
+    assert together == alone
 
 
 def test_the_same_seed_gives_the_same_gains_whatever_the_processes(found):

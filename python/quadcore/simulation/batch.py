@@ -20,6 +20,7 @@ from .._core import InputError
 from ..support.arguments import shorten
 from ..support.values import SPAWN, Value, check_poses, check_seeds, check_whole
 from ..support.warning import warn
+from .batch_guides import ControllerOfAll, ReferenceOfAll, follow, make_guides
 from .batch_state import BatchState as BatchState
 from .batch_vehicles import check_vehicle_count, explain_refusal, read_vehicles
 from .engines import EngineName, check_engine_and_step
@@ -98,15 +99,15 @@ class BatchSimulation(_core.Batch):
         n = check_vehicle_count(n)
         engine, dt = check_engine_and_step(engine, dt)
         try:
-            models, tags, self.world = read_vehicles(
-                n, model, world, parameters, xacro_args, ignore
-            )
+            self._vehicles = read_vehicles(n, model, world, parameters, xacro_args, ignore)
+            self.world = self._vehicles.world
+            self._engine = engine
             super().__init__(
-                models,
+                self._vehicles.models,
                 self.world,
                 engine,
                 dt,
-                tags,
+                self._vehicles.tags,
                 check_poses(spawn, n),
                 check_seeds(seed, n),
                 0 if threads is None else check_whole(threads, "threads", bits=31),
@@ -187,6 +188,9 @@ class BatchSimulation(_core.Batch):
         commands: Optional[npt.ArrayLike] = None,
         log: Sequence[int] = (),
         log_every: int = 1,
+        *,
+        controller: Optional[ControllerOfAll] = None,
+        reference: ReferenceOfAll = None,
     ) -> List[Log]:
         """Simulate all vehicles for a duration, and log some of them.
 
@@ -200,6 +204,13 @@ class BatchSimulation(_core.Batch):
             Indices of the vehicles to log, from 0.
         log_every : int, default 1
             Steps between logged rows.
+        controller : name, object, or sequence of n of these, optional
+            Controller of all vehicles or of each, instead of `commands`: built-in controllers, as
+            for `Simulation.run`, or one with ``vectorized = True`` for equal vehicles. Vehicles
+            start at time 0; see `reset`.
+        reference : name, object, or sequence of n of these, optional
+            Reference of all vehicles or of each, as for `Simulation.run`. Built-in controllers
+            require built-in references.
 
         Returns
         -------
@@ -210,8 +221,13 @@ class BatchSimulation(_core.Batch):
         Raises
         ------
         InputError
-            If an argument is wrong. Nothing moves.
+            If an argument is wrong, or a vehicle under a controller is not at its start. Nothing
+            moves.
         """
+        if commands is not None and controller is not None:
+            raise InputError("a batch takes commands or a controller. Give one of them.")
+        if reference is not None and controller is None:
+            raise InputError("a reference needs a controller that follows it. Give one.")
         if not isinstance(log, Iterable):
             raise InputError(f"log is {shorten(log)}. Give a list of vehicle numbers.")
         chosen = [check_whole(vehicle, "log") for vehicle in log]
@@ -221,6 +237,10 @@ class BatchSimulation(_core.Batch):
         total = count_steps(duration, self.dt)
         if check_whole(log_every, "log_every") < 1 or chosen:
             check_log_length(duration, self.dt, log_every)
+        if controller is not None:
+            guides = make_guides(self._vehicles, self._engine, self.dt, controller, reference)
+            tables = follow(self, guides, total, chosen, log_every)
+            return [guides[i].logs.make(table) for i, table in zip(chosen, tables)]
         self.step(commands, 0)
         logged = [[row] for row in self._rows_now(chosen)]
         times = total // log_every if chosen else 0

@@ -6,7 +6,19 @@ import hashlib
 import json
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence, Tuple, TypedDict, Union
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    Optional,
+    Sequence,
+    Tuple,
+    TypedDict,
+    Union,
+)
 
 import numpy as np
 
@@ -234,17 +246,36 @@ class FlightPlan:
         vehicle = make_simulation(**self._vehicle())
         return replace(self, commands=check_commands(commands, vehicle.command_width))
 
-    def simulation(self) -> Simulation:
-        """Make the simulation in its initial state; raises and warns as `Simulation` does."""
+    def simulation(self, placed: Optional[List[State]] = None) -> Simulation:
+        """Make the simulation in its initial state; raises and warns as `Simulation` does.
+
+        Parameters
+        ----------
+        placed : list of State, optional
+            List to which the states are added that `set_state` sets.
+        """
         simulation = make_simulation(**self._vehicle())
+        for state in self.list_placements(simulation):
+            simulation.set_state(state)
+            if placed is not None:
+                placed.append(state)
+        return simulation
+
+    def list_placements(self, simulation: Simulation) -> Iterator[State]:
+        """Yield the states that `set_state` sets before the flight; the last one is its start.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Simulation of this plan, in the state that was yielded before.
+        """
         if self.rotor_velocity is not None:
             state = simulation.state.copy()
             state.rotor_velocity = np.array(self.rotor_velocity, dtype=float)
-            simulation.set_state(state)
+            yield state
         start = self.find_start(simulation)
         if start is not None:
-            simulation.set_state(start)
-        return simulation
+            yield start
 
     def find_start(self, simulation: Simulation) -> Optional[State]:
         """Return the state on the reference in which a simulation of this plan begins, if any.

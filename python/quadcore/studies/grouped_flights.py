@@ -15,11 +15,12 @@ from ..control.own_columns import list_names
 from ..control.references import Shape
 from ..control.vectorized import is_vectorized
 from ..simulation.controller_pilot import ControllerPilot
-from ..simulation.flight import count_steps, list_columns
+from ..simulation.flight import count_steps
 from ..simulation.flight_plan import FlightPlan
+from ..simulation.guided_logs import GuidedLogs
 from ..simulation.log import Log
 from ..simulation.state import State
-from ..simulation.trajectory import find_speed_limit, per_command
+from ..simulation.trajectory import find_speed_limit
 from ..support.warning import suppress_warnings
 from .time_limit import time_limit
 from .tracking_errors import sample_flat_states
@@ -186,7 +187,8 @@ class _Kind:
     """Flights that differ only in the seed."""
 
     def __init__(self, plan: FlightPlan) -> None:
-        simulation = plan.simulation()
+        self.placed: List[State] = []
+        simulation = plan.simulation(self.placed)
         if simulation.time != 0:
             raise QuadcoreError("flights in a saved world are simulated alone")
         pilot = plan.pilot(simulation)
@@ -194,23 +196,10 @@ class _Kind:
         pilot.reset(simulation)
         self.guide = pilot.built_in if pilot.is_built_in else None
         self.plan, self.pilot = plan, pilot
-        self.columns = list_columns(simulation, (), pilot)
-        self.start = plan.find_start(simulation)
+        self.logs = GuidedLogs(simulation, pilot)
         self.dt = simulation.dt
         self.simulation = simulation  # the controller refers to it
-        self._per_command = per_command(simulation)
-        self._beside = np.empty((0, 0))
         self._flat_states: Optional[np.ndarray] = None
-
-    def make_log(self, table: np.ndarray) -> Log:
-        """Make the log of a flight from its rows, which begin at the same times."""
-        if len(self._beside) < len(table):
-            self._beside = self.pilot.sample(table[:, 0])
-        wanted = self._beside[: len(table)]
-        whole = np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
-        log = Log.of_rows(whole, self.columns, {}, self.simulation.ignored)
-        log.per_command = self._per_command
-        return log
 
     def sample_flat_states(self, times: np.ndarray) -> Optional[np.ndarray]:
         """Return the result of `sample_flat_states`; all flights have rows at the same times."""
@@ -238,6 +227,7 @@ def _identify(plan: FlightPlan) -> Any:
     """Return what flights that differ only in the seed have in common."""
     controller = plan.controller
     return (
+        type(plan),
         id(plan.model),
         tuple(sorted(plan.parameters.items())),
         plan.spawn,
@@ -260,9 +250,10 @@ def _make_batch(plans: Sequence[FlightPlan], kinds: Sequence[_Kind]) -> _core.Ba
         np.array([plan.seed for plan in plans], np.uint64),
         1,
     )
-    rows = [_make_row(kind.start) for kind in kinds if kind.start is not None]
-    if rows:
-        batch._take_state(np.array(rows))
+    if len({len(kind.placed) for kind in kinds}) > 1:
+        raise QuadcoreError("flights with different numbers of placements are simulated alone")
+    for states in zip(*(kind.placed for kind in kinds)):
+        batch._take_state(np.array([_make_row(state) for state in states]))
     return batch
 
 
@@ -288,7 +279,7 @@ def _fly(plans: Sequence[FlightPlan], needs_flat_states: bool) -> List[FlightRec
         range(len(kinds)),
     )
     failures = batch.failures
-    logs = [kind.make_log(tables[i, : rows[i]]) for i, kind in enumerate(kinds)]
+    logs = [kind.logs.make(tables[i, : rows[i]]) for i, kind in enumerate(kinds)]
     return [
         make_record(
             kind.pilot,
@@ -324,7 +315,7 @@ def _fly_vectorized(plans: Sequence[FlightPlan], needs_flat_states: bool) -> Lis
     finally:
         kind.pilot.close()
     failures = batch.failures
-    logs = [kind.make_log(tables[i, : rows[i]]) for i in range(n)]
+    logs = [kind.logs.make(tables[i, : rows[i]]) for i in range(n)]
     return [
         make_record(
             kind.pilot,

@@ -216,11 +216,10 @@ class _Flights:
             fly([[i] for i in rows[:: len(plan.seeds)]])
             fly(self._group_other_seeds())
         else:
-            processes = plan.options.processes or count_cores()
-            groups = share_out([i for i in rows if i not in drawn], processes)
+            groups = self._share_out([i for i in rows if i not in drawn])
             fly([*([i] for i in sorted(drawn)), *groups])
         if self._searches is not None:
-            self._searches.run(self._fly_trials)
+            self._searches.run(partial(self._fly_trials, together=not plan.control.runs_user_code))
 
     def make_evaluation(self, poles: List[Dict[str, Any]]) -> Evaluation:
         """Summarise the flights so far."""
@@ -249,11 +248,19 @@ class _Flights:
         outcomes = self._fly_trials([Trial(i) for i in range(len(self._plan.control.controllers))])
         return [outcome.slow_call if outcome.flew else nan for outcome in outcomes]
 
-    def _fly_trials(self, trials: Sequence[Trial]) -> List[Outcome]:
+    def _fly_trials(self, trials: Sequence[Trial], together: bool = False) -> List[Outcome]:
         outcomes = [Outcome()] * len(trials)
         flights = [partial(trial.make_plan, self._plan) for trial in trials]
-        self._fly_tasks(flights, outcomes, [[i] for i in range(len(trials))], watch=True)
+        tasks: List[Sequence[int]] = [[i] for i in range(len(trials))]
+        if together:
+            # A kick is one more change of the state, so kicked flights share no batch with others.
+            kinds = [[i for i, t in enumerate(trials) if t.kicked == kicked] for kicked in (0, 1)]
+            tasks = [group for rows in kinds for group in self._share_out(rows)]
+        self._fly_tasks(flights, outcomes, tasks, watch=True)
         return outcomes
+
+    def _share_out(self, rows: Sequence[int]) -> List[Sequence[int]]:
+        return share_out(rows, self._plan.options.processes or count_cores())
 
     def _group_other_seeds(self) -> List[Sequence[int]]:
         """Group the seeds after the first that a vectorized controller commands together."""

@@ -13,6 +13,7 @@ from ...control.inner_loop import InnerLoop
 from ...control.vehicle import Vehicle
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.simulation import Simulation
+from ...simulation.state import State
 from ..cases import Case, Cases
 
 EFFECTS = ("thrust", "drag", "lag")
@@ -77,13 +78,12 @@ class Trial(NamedTuple):
 class _KickedPlan(FlightPlan):
     """Plan of a flight with an initial disturbance."""
 
-    def simulation(self) -> Simulation:
-        simulation = super().simulation()
+    def list_placements(self, simulation: Simulation) -> Iterator[State]:
+        yield from super().list_placements(simulation)
         state = simulation.state.copy()
         state.linear_velocity += KICK
         state.angular_velocity += KICK
-        simulation.set_state(state)
-        return simulation
+        yield state
 
 
 def list_missing_effects(simulation: Simulation) -> List[str]:

@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 import re
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
+from functools import partial
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import (
+    Any,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
 
 import numpy as np
 
@@ -17,6 +29,8 @@ from ...control.gains import Gains
 from ...report.decimation import decimate
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
+from ...simulation.simulation import Simulation
+from ...simulation.state import State
 from ...support import rotation
 from ...support.arguments import shorten
 from ...support.warning import suppress_warnings
@@ -24,7 +38,8 @@ from ..axes import Values
 from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
 from ..control_setup import ControlSetup, add_labels, names_user_code
 from ..design import Design
-from ..executor import call_apart
+from ..executor import call_apart, count_cores
+from ..grouped_flights import fly_group, share_out
 from ..options import ControlOptions
 from ..time_limit import time_limit
 from ..tracking_metrics import compute_errors, describe_failure, find_failure_time
@@ -69,6 +84,18 @@ class TrialResult(NamedTuple):
     """RMS tracking error, m; after a failure, the error is the failure distance."""
     failure: str
     """Reason of a failure; "" for success."""
+
+
+@dataclass(frozen=True, eq=False)
+class _OffsetPlan(FlightPlan):
+    """Plan of a flight from an offset."""
+
+    def list_placements(self, simulation: Simulation) -> Iterator[State]:
+        yield from super().list_placements(simulation)
+        state = simulation.state.copy()
+        state.position = state.position + OFFSET
+        state.orientation = rotation.turn(state.orientation, np.array(TURN))
+        yield state
 
 
 class Problem:
@@ -171,7 +198,7 @@ class Problem:
     def simulate(self, trial: Trial, gains: Mapping[str, float]) -> Flown:
         """Simulate a trial; raises `InputError` if the controller rejects gains or vehicle."""
         try:
-            return Flown(self._fly_log(trial, gains), "")
+            return Flown(self._make_plan(trial, gains).fly(), "")
         except FlightError as error:
             if not hasattr(error, "log"):
                 raise
@@ -227,24 +254,53 @@ class Problem:
         offset = float(apart[0])
         return f"{left:.3g} m of an offset of {offset:.3g} m remain after {_RETURN_TIME:g} s"
 
-    def _fly_log(self, trial: Trial, gains: Mapping[str, float]) -> Log:
-        plan = replace(trial.plan, controller=self._make_controller({**gains, **trial.values}))
-        simulation = plan.simulation()
-        if trial.has_offset:
-            state = simulation.state.copy()
-            state.position = state.position + OFFSET
-            state.orientation = rotation.turn(state.orientation, np.array(TURN))
-            simulation.set_state(state)
-        return simulation.run(
-            plan.duration,
-            log_every=plan.log_every,
-            controller=plan.controller,
-            reference=plan.reference,
-        )
+    def fly_together(
+        self, flights: Sequence[Tuple[Trial, Mapping[str, float]]], limit: float
+    ) -> Optional[List[TrialResult]]:
+        """Simulate and judge trials on one batch, bit-identical to single flights.
+
+        Parameters
+        ----------
+        flights
+            Trials, all with or all without an offset, and their gains.
+        limit
+            Wall-clock limit of each flight, s.
+
+        Returns
+        -------
+        list of TrialResult, or None
+            Results; None if only single flights are possible.
+        """
+        records = fly_group([partial(self._make_plan, *flight) for flight in flights], limit)
+        if records is None:
+            return None
+        return [
+            self.judge(trial, Flown(record.log, record.failure))
+            for record, (trial, _) in zip(records, flights)
+        ]
+
+    def group(self, flights: Sequence[Tuple[Trial, Mapping[str, float]]]) -> List[Sequence[int]]:
+        """Group the indices of flights that can share a batch."""
+        if self.runs_user_code:
+            return [[i] for i in range(len(flights))]
+        # An offset is one more change of the state at the start.
+        kinds = [
+            [i for i, (trial, _) in enumerate(flights) if trial.has_offset == has_offset]
+            for has_offset in (False, True)
+        ]
+        processes = self.options.processes or count_cores()
+        return [group for rows in kinds for group in share_out(rows, processes)]
+
+    def _make_plan(self, trial: Trial, gains: Mapping[str, float]) -> FlightPlan:
+        controller = self._make_controller({**gains, **trial.values})
+        if not trial.has_offset:
+            return replace(trial.plan, controller=controller)
+        values = {each.name: getattr(trial.plan, each.name) for each in fields(trial.plan)}
+        return _OffsetPlan(**{**values, "controller": controller})
 
     def watch(self, trial: Trial, gains: Mapping[str, float]) -> Log:
         """Simulate a trial with gains and return its decimated log; raises `QuadcoreError`."""
-        return decimate(self._fly_log(trial, gains))
+        return decimate(self._make_plan(trial, gains).fly())
 
     def list_settings(self) -> Dict[str, Any]:
         """Return the settings of the flights, as plain values."""

@@ -11,7 +11,7 @@ import numpy as np
 from ..._core import InputError, QuadcoreError
 from ...control.gains import Gains
 from ...support.warning import suppress_warnings
-from ..executor import run_contained
+from ..executor import contain_errors, run_contained
 from ..options import Progress
 from ..time_limit import time_limit
 from .problem import Flown, Problem, Trial, TrialResult
@@ -193,18 +193,36 @@ class Search:
     def _fly(self, flights: Sequence[Tuple[Trial, Mapping[str, float]]]) -> List[TrialResult]:
         outcomes: List[Optional[TrialResult]] = [None] * len(flights)
         problem = self._problem
+        groups = problem.group(flights)
 
-        def take(index: int, outcome: Union[Flown, QuadcoreError]) -> None:
-            if isinstance(outcome, QuadcoreError):
-                # Gains that the controller rejects count as the worst.
-                outcomes[index] = TrialResult(problem.options.failure_distance, str(outcome))
-            else:
-                outcomes[index] = problem.judge(flights[index][0], outcome)
+        def describe(error: QuadcoreError) -> TrialResult:
+            # Gains that the controller rejects count as the worst.
+            return TrialResult(problem.options.failure_distance, str(error))
 
-        def fly(index: int) -> Flown:
+        def take(task: int, found: Union[List[Any], QuadcoreError]) -> None:
+            if isinstance(found, QuadcoreError):
+                found = [describe(found)] * len(groups[task])
+            for index, one in zip(groups[task], found):
+                is_flown = isinstance(one, Flown)
+                outcomes[index] = problem.judge(flights[index][0], one) if is_flown else one
+
+        def fly(task: int) -> List[Any]:
+            chosen = [flights[index] for index in groups[task]]
+            if len(chosen) == 1:
+                return [fly_one(chosen[0])]
+            together = problem.fly_together(chosen, self._limit)
+            return together or [fly_contained(flight) for flight in chosen]
+
+        def fly_one(flight: Tuple[Trial, Mapping[str, float]]) -> Flown:
             with suppress_warnings(), time_limit(self._limit):
-                return problem.simulate(*flights[index])
+                return problem.simulate(*flight)
+
+        def fly_contained(flight: Tuple[Trial, Mapping[str, float]]) -> Any:
+            try:
+                return contain_errors(fly_one)(flight)
+            except QuadcoreError as error:
+                return describe(error)
 
         # Indices, as a reference may be a function, which cannot be pickled.
-        self._run(fly, len(flights), take)
+        self._run(fly, len(groups), take)
         return outcomes  # type: ignore[return-value]

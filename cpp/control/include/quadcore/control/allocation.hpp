@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "quadcore/control/modelled_vehicle.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
@@ -10,6 +12,9 @@ struct Demand {
   double thrust = 0;                     ///< along z of F [N]
   Vector3d torque_F = Vector3d::Zero();  ///< about the centre of mass [N m]
 };
+
+template <class T>
+struct AllocatedRotor;
 
 /// Computes the squared speeds for a demand, thesis eq. (2.51) for any number of rotors: those with
 /// the minimum sum of squares within the speed limits. An infeasible demand is met by priority:
@@ -23,6 +28,8 @@ class Allocation {
   /// Throws InputError if the rotors do not span thrust and torques.
   explicit Allocation(const ModelledVehicle& model);
 
+  /// Return the numbers of a rotor.
+  const AllocatedRotor<double>& rotor(std::size_t i) const;
   /// Return the number of driven rotors.
   std::size_t rotors() const { return static_cast<std::size_t>(inverse_.rows()); }
   /// Compute the squared speeds for a demand.
@@ -49,6 +56,7 @@ class Allocation {
     double thrust;      ///< N
     double yaw;         ///< N m
   };
+  bool fits(const double* squares, const double* lost) const;
   void find_facets();
   void add_facets(std::vector<Facets>& facets, Eigen::Vector4d scaled_normal) const;
   bool is_within(const Eigen::Vector4d& demand, const double* lost) const;
@@ -57,7 +65,8 @@ class Allocation {
   Interval yaw_beside(double thrust, double roll, double pitch, const double* lost) const;
   void redistribute(const Eigen::Vector4d& demand, double* squares, const double* lost) const;
 
-  Eigen::Matrix<double, 4, Eigen::Dynamic> effect_;
+  struct Numbers;
+  std::shared_ptr<const Numbers> numbers_;
   Eigen::Matrix<double, Eigen::Dynamic, 4> inverse_;
   VectorXd least_, most_;       ///< squares
   VectorXd nothing_;            ///< lost

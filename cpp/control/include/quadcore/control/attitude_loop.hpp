@@ -39,9 +39,7 @@ class AttitudeLoop {
   /// \param w_error_F  wanted minus actual angular velocity [rad/s]
   Vector3d angular_acceleration(const Quaterniond& q_FD, const Vector3d& w_error_F) const;
   /// Return the angular acceleration that corrects only an angular velocity error.
-  Vector3d angular_acceleration(const Vector3d& w_error_F) const {
-    return d_.cwiseProduct(w_error_F);
-  }
+  Vector3d angular_acceleration(const Vector3d& w_error_F) const;
   /// Return the torque of the rotors for an angular acceleration, in F [N m].
   /// \param now  odometry with the velocity in W
   /// \param h_F  angular momentum of the rotors, relative to the frame [kg m^2/s]
@@ -49,8 +47,7 @@ class AttitudeLoop {
 
  private:
   ModelledVehicle model_;
-  bool drag_, gyroscopic_;
-  Vector3d p_, d_;
+  AttitudeGains gains_;
 };
 
 }  // namespace control

@@ -29,6 +29,8 @@ struct LawInput {
   bool saturated;           ///< whether the last demand was not met
 };
 
+struct LaneLaw;
+
 /// A control law from odometry and reference to thrust and torques. It is immutable; the caller
 /// owns its memory, which is all zero at the start.
 class ControlLaw {
@@ -41,6 +43,8 @@ class ControlLaw {
   /// Return the demand on the rotors until the next call.
   /// \param memory  ControllerInfo::memory_size numbers
   virtual Demand demand(const LawInput& input, double* memory) const = 0;
+  /// Return the control law for the lanes of a batch, or null if it is only for single vehicles.
+  virtual std::shared_ptr<const LaneLaw> in_lanes(double /*period*/) const { return nullptr; }
 };
 
 /// A controller that users can choose.

@@ -6,6 +6,8 @@
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
+struct LaneController;
+
 /// A controller from odometry and reference to rotor speeds. Immutable; the caller owns the state,
 /// which is all zero at the start.
 class Controller {
@@ -32,6 +34,14 @@ class Controller {
   /// \param flat    flat state of the reference as feeds() requires; null: computed if needed
   void command(double period, const Odometry& now, const Reference& wanted, double* state,
                double* speeds, const FlatState* flat = nullptr) const;
+  /// Compute the speeds for a demand of the control law.
+  void act(double period, const Demand& demand, double* state, double* speeds) const {
+    actuation_.command(period, demand, state, speeds);
+  }
+  /// Return the controller for the lanes of a batch, or null if it is only for single vehicles.
+  /// Whole rotors are assumed.
+  /// \param period  time between calls [s]
+  std::shared_ptr<const LaneController> in_lanes(double period) const;
   /// Return the flat state that command() uses.
   ControlLaw::Feeds feeds() const { return law_->feeds(); }
   /// Set the remaining fraction of a rotor's thrust and torque.

@@ -30,11 +30,6 @@ struct FlatState {
 /// \param with_drag  whether to compensate the modelled drag
 FlatState flat_state(const Reference& wanted, const ModelledVehicle& model, bool with_drag);
 
-/// Return the orientation with z along the given nonzero direction and x in the vertical plane of a
-/// yaw.
-/// \param across_W  across_yaw()
-Matrix3d attitude_of(const Vector3d& z_W, const Vector3d& across_W);
-
 /// Return the torque of the rotors about the centre of mass for the angular acceleration w' =
 /// dw_WF_F [N m]: I w' + w x (I w + h) minus the aerodynamic torque.
 /// \param h_F  angular momentum of the rotors, relative to the frame [kg m^2/s]

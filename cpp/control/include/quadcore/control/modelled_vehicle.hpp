@@ -48,11 +48,6 @@ struct ModelledVehicle {
   /// Return the torque about the centre of mass in F [N m].
   Vector3d air_torque_F(const Vector3d& v_WF_F, const Vector3d& w_WF_F) const;
   /// @}
-
- private:
-  Vector3d v_WCcm_F(const Vector3d& v_WF_F, const Vector3d& w_WF_F) const {
-    return v_WF_F + w_WF_F.cross(p_FCcm_F);
-  }
 };
 
 }  // namespace control

@@ -1,0 +1,132 @@
+#include "lane_controls.hpp"
+
+#include <algorithm>
+
+#include "actuation_law.hpp"
+#include "lanes/for_each_width.hpp"
+#include "numbers.hpp"
+#include "quadcore/lane_width.hpp"
+
+namespace quadcore::batch {
+
+using control::size_of;
+
+void PackTable::fill(const double* column) {
+  for (std::size_t part = 0; part < widest_lanes / width_; ++part) {
+    for (std::size_t row = 0; row < rows_; ++row) {
+      std::fill_n(&numbers_[(part * rows_ + row) * width_], width_, column[row]);
+    }
+  }
+}
+
+LaneControls::LaneControls(const Follower& like,
+                           std::shared_ptr<const control::LaneController> controller)
+    : like_(std::move(controller)),
+      rate_(like.guide->rate),
+      delay_(like.guide->delay),
+      rotors_(like_->rotors),
+      width_(lane_width(widest_lanes)),
+      schedule_(rate_, delay_, rotors_ * widest_lanes),
+      pending_(schedule_.state_size()),
+      law_(width_, like_->law.numbers.size()),
+      actuators_(width_, like_->actuators.size()),
+      measured_(width_, size_of<control::MeasuredNumbers>),
+      wanted_(width_, size_of<control::WantedNumbers>),
+      state_(width_, like_->state.size()),
+      demand_(width_, size_of<control::DemandNumbers>),
+      speeds_(width_, rotors_) {}
+
+bool LaneControls::takes(const Follower& follower,
+                         const control::LaneController& controller) const {
+  return follower.guide->rate == rate_ && follower.guide->delay == delay_ &&
+         control::are_alike(*like_, controller);
+}
+
+void LaneControls::add(Follower& follower, const control::LaneController& controller,
+                       control::ReferencePreview& preview) {
+  const std::size_t lane = follower.lane();
+  members_.push_back({&follower, lane, &preview, true});
+  law_.put(lane, controller.law.numbers.data());
+  actuators_.put(lane, controller.actuators.data());
+  state_.put(lane, controller.state.data());
+}
+
+void LaneControls::command(double step, double dt, double period, const double* shown,
+                           double* speeds) {
+  bool is_timed = false;
+  for (const Member& member : members_) is_timed = count_call(*member.follower->guided);
+  const Stopwatch stopwatch;
+  measure(step, shown);
+  read_references(step, dt);
+  call(period);
+  const double seconds = is_timed ? stopwatch.seconds() : 0;
+  for (const Member& member : members_) {
+    speeds_.get(member.lane, speeds + member.lane * rotors_);
+    BatchGuided& guided = *member.follower->guided;
+    guided.saturated += state_.at(control::ActuationRow::saturated, member.lane) != 0;
+    if (is_timed) guided.seconds.push_back(seconds / static_cast<double>(members_.size()));
+  }
+}
+
+void LaneControls::measure(double step, const double* shown) {
+  for (const Member& member : members_) {
+    const Follower& follower = *member.follower;
+    const OdometryErrors& errors = *follower.errors;
+    const auto measured = control::numbers_of(batch::measure(
+        shown + member.lane, errors, follower.seed, follower.draws + step * errors.draws()));
+    measured_.put(member.lane, reinterpret_cast<const double*>(&measured));
+  }
+}
+
+void LaneControls::read_references(double step, double dt) {
+  const auto list_times = [&](double* times, std::size_t count) {
+    double at = step;
+    for (std::size_t i = 0; i < count; ++i) {
+      times[i] = at * dt;
+      at = schedule_.next_call(at, dt);
+    }
+  };
+  const control::ReferencePreview* of_all = nullptr;
+  for (Member& member : members_) {
+    const BatchGuide& guide = *member.follower->guide;
+    const control::ReferencePreview::Point& point =
+        member.preview->at(step * dt, *guide.reference, list_times);
+    const bool feeds = guide.controller->feeds() != control::ControlLaw::Feeds::nothing;
+    member.is_defined = point.flat || !feeds;
+    if (member.preview == of_all) continue;
+    const auto wanted = control::numbers_of(point.wanted, point.flat ? &*point.flat : nullptr);
+    const auto* const column = reinterpret_cast<const double*>(&wanted);
+    if (of_all) {
+      wanted_.put(member.lane, column);
+    } else {
+      wanted_.fill(column);
+      of_all = member.preview;
+    }
+  }
+}
+
+void LaneControls::call(double period) {
+  static constexpr laws::ForEachWidth<void(const control::CommandBlock&)> calls{
+      &control::command_block<1>, &control::command_block<2>, &control::command_block<4>,
+      &control::command_block<8>};
+  std::int64_t complete[widest_lanes];
+  calls[width_]({like_->law.kind, like_->law.switches, rotors_, like_->law.numbers.size(),
+                 like_->state.size(), period, !has_begun_, law_.data(), actuators_.data(),
+                 measured_.data(), wanted_.data(), state_.data(), demand_.data(), speeds_.data(),
+                 complete});
+  has_begun_ = true;
+  std::vector<double> state, speeds(rotors_);
+  for (const Member& member : members_) {
+    if (complete[member.lane] != 0 || member.follower->has_left) continue;
+    state.resize(like_->state.size());
+    control::DemandNumbers<double> demand{};
+    demand_.get(member.lane, reinterpret_cast<double*>(&demand));
+    state_.get(member.lane, state.data());
+    member.follower->guide->controller->act(period, control::demand_of(demand), state.data(),
+                                            speeds.data());
+    state_.put(member.lane, state.data());
+    speeds_.put(member.lane, speeds.data());
+  }
+}
+
+}  // namespace quadcore::batch

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "law_numbers.hpp"
+
+/// \file
+/// Controllers of several vehicles at once. Contains neither Eigen nor code, so that files compiled
+/// for a specific processor can include it.
+
+namespace quadcore::control {
+
+/// Control laws for the lanes.
+enum class LawKind { geometric, indi, lqr };
+
+/// Number of values of a struct of numbers.
+template <template <class> class Numbers>
+constexpr std::size_t size_of = sizeof(Numbers<double>) / sizeof(double);
+
+/// Controllers of up to widest_lanes vehicles. A table contains a struct of packs of W vehicles,
+/// then that of the next W vehicles.
+struct CommandBlock {
+  LawKind kind;
+  LawSwitches switches;
+  std::size_t rotors, law_rows, state_rows;
+  double period;
+  bool begins;
+  const double* law;        ///< TrackingNumbers, IndiNumbers or LqrNumbers
+  const double* actuators;  ///< RotorNumbers of each rotor
+  const double* measured;   ///< MeasuredNumbers
+  const double* wanted;     ///< WantedNumbers
+  double* state;            ///< state of Controller
+  double* demand;           ///< written DemandNumbers
+  double* speeds;           ///< written commands of each rotor [rad/s]
+  /// Written: -1 for each vehicle whose command is complete; 0 where the demand exceeds a rotor's
+  /// limits, such that Actuation must distribute it.
+  std::int64_t* complete;
+};
+
+/// Call the controllers, W at once.
+template <int W>
+void command_block(const CommandBlock& block);
+
+}  // namespace quadcore::control

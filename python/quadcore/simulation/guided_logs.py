@@ -1,0 +1,41 @@
+"""Logs of flights that a batch simulates under controllers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .controller_pilot import ControllerPilot
+from .flight import list_columns
+from .log import Log
+from .simulation import Simulation
+from .trajectory import per_command
+
+
+class GuidedLogs:
+    """Logs of flights of one vehicle under one pilot, whose rows begin at the same times.
+
+    Parameters
+    ----------
+    simulation
+        Simulation of the vehicle.
+    pilot
+        Pilot with the reference.
+    """
+
+    def __init__(self, simulation: Simulation, pilot: ControllerPilot) -> None:
+        self._pilot = pilot
+        self._columns = list_columns(simulation, (), pilot)
+        self._ignored = simulation.ignored
+        self._per_command = per_command(simulation)
+        self._wanted = np.empty((0, 0))
+
+    def make(self, table: np.ndarray) -> Log:
+        """Make the log of a flight from the rows of its state."""
+        if self._pilot.columns:
+            if len(self._wanted) < len(table):
+                self._wanted = self._pilot.sample(table[:, 0])
+            wanted = self._wanted[: len(table)]
+            table = np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
+        log = Log.of_rows(table, self._columns, {}, self._ignored)
+        log.per_command = self._per_command
+        return log

@@ -1,0 +1,100 @@
+"""`BatchSimulation.run` with controllers."""
+
+import numpy as np
+import pytest
+
+import quadcore as qc
+
+NOISE = {"odometry.positionNoise": 0.002}
+SLOW = {"sim_slow": 1}
+N = 10
+
+
+def assert_alike(log, alone):
+    for name in ("time", "position", "orientation", "rotor_velocity"):
+        np.testing.assert_array_equal(getattr(log, name), getattr(alone, name), name)
+    np.testing.assert_array_equal(log.topics["error"]["x"], alone.topics["error"]["x"])
+    assert log.per_command == alone.per_command
+
+
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_one_controller_of_all_vehicles(engine):
+    thrust = np.linspace(8.4e-6, 8.6e-6, N)
+    batch = qc.BatchSimulation(
+        "quadrotor",
+        N,
+        engine,
+        {**NOISE, "drone_plugin.rotorThrustCoeff": thrust},
+        seed=3,
+        xacro_args=SLOW,
+    )
+    logs = batch.run(
+        1.0, log=[0, 4, N - 1], log_every=5, controller="geometric", reference="spiral"
+    )
+    for vehicle, log in zip((0, 4, N - 1), logs):
+        sim = qc.Simulation(
+            "quadrotor",
+            engine,
+            parameters={**NOISE, "drone_plugin.rotorThrustCoeff": thrust[vehicle]},
+            seed=3 + vehicle,
+            xacro_args=SLOW,
+        )
+        assert_alike(log, sim.run(1.0, log_every=5, controller="geometric", reference="spiral"))
+
+
+def test_a_controller_and_a_reference_for_each_vehicle():
+    controllers = ["lqr", qc.controllers.geometric(rate=250), "pid"]
+    references = ["spiral", qc.references.circle(), "eight"]
+    batch = qc.BatchSimulation("quadrotor", 3, xacro_args=SLOW)
+    logs = batch.run(0.8, log=[0, 1, 2], controller=controllers, reference=references)
+    for seed, log in enumerate(logs):
+        sim = qc.Simulation("quadrotor", "eigen", seed=seed, xacro_args=SLOW)
+        alone = sim.run(0.8, controller=controllers[seed], reference=references[seed])
+        assert_alike(log, alone)
+    batch.reset()
+    again = batch.run(0.8, log=[1], controller=controllers, reference=references)
+    np.testing.assert_array_equal(again[0].position, logs[1].position)
+
+
+class Hover:
+    vectorized = True
+
+    def __call__(self, t, state, reference):
+        return np.tile([470.0, -470.0, 470.0, -470.0], (len(state.position), 1))
+
+
+def test_a_vectorized_controller():
+    batch = qc.BatchSimulation("quadrotor", 3, xacro_args=SLOW)
+    (log,) = batch.run(0.5, log=[2], controller=Hover(), reference="hover")
+    sim = qc.Simulation("quadrotor", "eigen", seed=2, xacro_args=SLOW)
+    assert_alike(log, sim.run(0.5, controller=Hover(), reference="hover"))
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        (
+            {"controller": ["pid"], "reference": "spiral"},
+            "controller lists 1 values for 3 vehicles",
+        ),
+        ({"reference": "spiral"}, "a reference needs a controller"),
+        ({"controller": lambda t, state, reference: None}, "takes built-in controllers"),
+        ({"controller": "pid"}, "takes built-in controllers"),
+        (
+            {"controller": "pid", "commands": np.zeros((3, 4))},
+            "takes commands or a controller",
+        ),
+    ],
+)
+def test_wrong_arguments_move_nothing(options, message):
+    batch = qc.BatchSimulation("quadrotor", 3)
+    with pytest.raises(qc.InputError, match=message):
+        batch.run(0.1, **options)
+    assert batch.time.tolist() == [0, 0, 0]
+
+
+def test_vehicles_under_way_take_no_controller():
+    batch = qc.BatchSimulation("quadrotor", 2)
+    batch.step()
+    with pytest.raises(qc.InputError, match="is not at its start"):
+        batch.run(0.1, controller="pid", reference="spiral")
