@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -86,11 +85,10 @@ def study():
 
 @pytest.fixture(scope="session")
 def folders_of_hook_plugins(tmp_path_factory):
-    from builds import build
+    from builds import ROOT, build_once
 
-    root = Path(__file__).resolve().parents[2]
-    sources = (root / "examples" / "hooks", root / "tests" / "python" / "plugins")
-    return [build(source, tmp_path_factory.mktemp(source.name)) for source in sources]
+    sources = (ROOT / "examples" / "hooks", ROOT / "tests" / "python" / "plugins")
+    return [build_once(source, tmp_path_factory) for source in sources]
 
 
 @pytest.fixture
@@ -101,10 +99,9 @@ def hook_plugins(folders_of_hook_plugins, monkeypatch):
 
 @pytest.fixture(scope="session")
 def folder_of_relay(tmp_path_factory):
-    from builds import build
+    from builds import ROOT, build_once
 
-    root = Path(__file__).resolve().parents[2]
-    return build(root / "tests" / "plugins" / "relay", tmp_path_factory.mktemp("relay"))
+    return build_once(ROOT / "tests" / "plugins" / "relay", tmp_path_factory)
 
 
 @pytest.fixture

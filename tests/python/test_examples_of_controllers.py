@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builds import build
+from builds import build_once
 from flights import ENGINES
 from hooked import with_plugins
 from vehicles import plugin
@@ -26,7 +26,7 @@ def away(log, reference):
 
 @pytest.fixture(scope="module")
 def plugin_folder(tmp_path_factory):
-    return build(EXAMPLES / "law_plugin", tmp_path_factory.mktemp("controller"))
+    return build_once(EXAMPLES / "law_plugin", tmp_path_factory)
 
 
 @pytest.fixture

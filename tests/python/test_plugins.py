@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builds import build
+from builds import build, build_once
 from faults import MODEL, refusal
 from flights import ENGINES
 
@@ -26,13 +26,13 @@ AT = f"toy.urdf:{LINE}: plugin 'bad'"
 @pytest.fixture(scope="module")
 def side_force(tmp_path_factory):
     """Folder that holds the example's library."""
-    return build(ROOT / "examples" / "side_force_plugin", tmp_path_factory.mktemp("side_force"))
+    return build_once(ROOT / "examples" / "side_force_plugin", tmp_path_factory)
 
 
 @pytest.fixture(scope="module")
 def faulty(tmp_path_factory):
     """Folder that holds bad plugins."""
-    return build(ROOT / "tests" / "python" / "plugins", tmp_path_factory.mktemp("faulty"))
+    return build_once(ROOT / "tests" / "python" / "plugins", tmp_path_factory)
 
 
 @pytest.fixture
