@@ -194,3 +194,10 @@ def test_wrong_input_is_one_line(capsys):
     ):  # fmt: skip
         assert main(["measure", *words]) == 2, words
         assert message in capsys.readouterr().err
+
+
+def test_constraints_and_further_metrics_are_those_of_simulated_flights():
+    criteria = {"constraints": {"tilt": 0.3}, "metrics": ["attitude"], "failure_distance": 0.5}
+    expected = qc.evaluate("pd", "circle", **FLIGHT, **criteria).table[0]
+    check_equal(measured(fly(), **criteria).table[0], expected, OF_CALLS)
+    assert expected["tilt_violation"] > 0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import quadcore as qc
+from quadcore.cli import main
 from quadcore.control import controllers
 from quadcore.simulation.simulation import make_simulation
 from quadcore.studies.evaluate.poles import compute_poles, format_poles, has_poles, read_gains
@@ -30,6 +31,27 @@ def test_the_zero_of_the_yaw_is_where_air_and_spin_up_cancel():
     opposing = by_axis(controllers.pid_thesis(), **{"drone_plugin.reactionTorque": "opposing"})
     assert opposing["yaw"]["zero"] == pytest.approx(-zero)
     assert opposing["yaw"]["stable"]
+
+
+def test_info_and_failures_name_a_zero_in_the_right_half_plane(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = "The yaw dynamics have a zero at +9.01 1/s"
+    slow = ["--xacro", "sim_slow:=1"]
+    assert main(["info", "quadrotor", *slow]) == 0
+    assert text in capsys.readouterr().out
+    assert main(["info", "crazyflie"]) == 0
+    assert "zero at" not in capsys.readouterr().out
+    lost = [
+        "--controller",
+        "pd:kp_yaw=100,kd_yaw=20",
+        "--reference",
+        "hover",
+        "--spawn",
+        "0,0,9,0,0,1",
+    ]
+    limit = ["--duration", "10", "--failure-distance", "0.5"]
+    assert main(["evaluate", *lost, *limit, *slow]) == 3
+    assert f"quadrotor: t{text[1:]}" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("scale", [0.8, 1])

@@ -9,6 +9,8 @@ import numpy as np
 from .._core import InputError
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.simulation import Simulation
+from ..studies.evaluate.poles import describe_yaw_zero, find_yaw_zero
+from ..studies.tracking_metrics import FAILURE_DISTANCE
 from ..support.warning import warn
 
 
@@ -44,3 +46,19 @@ def refuse_log_every(arguments: argparse.Namespace, what: str) -> None:
 
 def _turn_one_way(speeds: np.ndarray) -> bool:
     return speeds.shape[1] > 1 and bool(np.all(speeds > 0) or np.all(speeds < 0))
+
+
+def warn_of_yaw_zero(simulation: Simulation, error: float) -> None:
+    """Warn if a vehicle far from its reference has a zero in the right half-plane in yaw.
+
+    Parameters
+    ----------
+    simulation
+        Vehicle.
+    error
+        Maximum tracking error, m.
+    """
+    if error > FAILURE_DISTANCE:
+        zero = describe_yaw_zero(find_yaw_zero(simulation))
+        if zero:
+            warn(f"the vehicle was {error:.3g} m from its reference; {zero}")

@@ -55,6 +55,7 @@ def evaluate_controllers(arguments: argparse.Namespace) -> None:
 
 def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
     from ..studies.evaluate.evaluate import fly_plan
+    from ..studies.evaluate.failure_causes import explain_failures
     from ..studies.evaluate.output import write
 
     out = arguments.out
@@ -68,7 +69,7 @@ def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
         evaluation = fly_plan(plan, progress, arguments.margins)
     files = write_files(evaluation, not arguments.no_plots)
     if not arguments.quiet:
-        show(evaluation, files, plan.notes)
+        show(evaluation, files, [*plan.notes, *explain_failures(evaluation, plan)])
     report_failures(
         [row["failure"] for row in evaluation.table],
         sum(outcome.refused for outcome in evaluation.outcomes),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import textwrap
 from pathlib import Path
@@ -13,6 +14,7 @@ from rich.table import Table
 from .._core import InputError, parse_number
 from ..model import resources
 from ..simulation.simulation import Simulation
+from ..studies.evaluate.poles import describe_yaw_zero, find_yaw_zero
 from ..studies.options import OUTPUT
 from ..support.output_files import atomic_write
 from ..thesis.chapter2.vehicle import Vehicle
@@ -103,6 +105,9 @@ def _print(simulation: Simulation) -> None:
         _make_rotor_table(simulation),
     ):
         console.print(table, "")
+    yaw = describe_yaw_zero(find_yaw_zero(simulation))
+    if yaw:
+        console.print(f"{yaw[0].upper()}{yaw[1:]}\n")
     for plugin in simulation.plugins:
         console.print(f"plugin {plugin.name}: {plugin.summary}")
         console.print(f"  {plugin.filename}, loaded from {plugin.path}", soft_wrap=True)
@@ -122,6 +127,7 @@ def _print(simulation: Simulation) -> None:
 def _describe(simulation: Simulation) -> Dict[str, Any]:
     """Describe the model in plain values."""
     model = simulation.model
+    yaw_zero = find_yaw_zero(simulation)
     return {
         "model": model.name,
         "ignored": list(simulation.ignored),
@@ -129,6 +135,7 @@ def _describe(simulation: Simulation) -> Dict[str, Any]:
         "mass": simulation.mass,
         "center_of_mass": simulation.center_of_mass.tolist(),
         "inertia": simulation.inertia.tolist(),
+        "yaw_zero": yaw_zero if math.isfinite(yaw_zero) else None,
         "joints": [
             {"name": joint.name, "position": list(joint.xyz), "axis": list(joint.axis)}
             for joint in model.joints

@@ -229,7 +229,7 @@ def add_model_option(parser: argparse.ArgumentParser) -> None:
 
 _CONTROLLERS = (
     f"{', '.join(controllers.NAMES)}, each with optional parameters, NAME:KEY=VALUE,...; a gains "
-    "file; or your own class or function, FILE.py[:NAME] or MODULE:NAME"
+    "file; or your own class or plugin, FILE.py[:NAME], MODULE:NAME or FILE.so"
 )
 
 

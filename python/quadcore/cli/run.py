@@ -21,7 +21,7 @@ from ..studies.options import OUTPUT
 from ..studies.output_folder import output_folder
 from ..support import interrupts, parse
 from . import options, reading, run_folder, terminal
-from .command_checks import warn_of_commands
+from .command_checks import warn_of_commands, warn_of_yaw_zero
 from .parser import add_command, find_group
 from .run_summary import describe_result, summarize
 
@@ -161,6 +161,8 @@ def _run(arguments: argparse.Namespace) -> None:
         view.page.wait_for_pages(_PATIENCE)
     recording.check()
     warn_of_commands(simulation, plan)
+    if errors is not None:
+        warn_of_yaw_zero(simulation, errors.max)
 
 
 def _open_view(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any, Dict, List, Optional, Tuple
+import math
+from typing import Any, Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from ..simulation.clearance import Clearance, Encounter
 from ..simulation.controller_pilot import ControllerPilot
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.recording import TAIL, FastestRotor, TrackingError
+from ..simulation.reference_pilot import PluginPilot
 from ..simulation.simulation import Simulation
 from ..simulation.trajectory import is_slow, per_command
 from ..support.rotation import to_roll_pitch_yaw
@@ -23,7 +25,7 @@ def summarize(
     fastest: FastestRotor,
     clearance: Clearance,
     elapsed: float,
-    pilot: Optional[ControllerPilot],
+    pilot: Union[ControllerPilot, PluginPilot, None],
     errors: Optional[TrackingError],
 ) -> Dict[str, Any]:
     """Collect the result in plain values, by name."""
@@ -108,15 +110,21 @@ def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
 def _describe_control(result: Dict[str, Any]) -> List[Tuple[str, str]]:
     start = ", start in its full state" if result["starts_on_reference"] else ""
     late = f", {result['final_error']:.4g} m (last {TAIL:g} s)" if result["duration"] > TAIL else ""
-    timing = f"{result['controller_rate']:g} Hz, delay {result['delay']:g} s"
-    return [
-        ("controller", f"{result['controller']}, {timing}"),
+    name = result["controller"]
+    if not math.isnan(result["controller_rate"]):  # that of a plugin is its own
+        name += f", {result['controller_rate']:g} Hz, delay {result['delay']:g} s"
+    rows = [
+        ("controller", name),
         ("reference", f"{result['reference']}{start}"),
         ("max error", f"{result['max_error']:.4g} m (whole flight){late}"),
         ("RMS error", f"{result['rms_error']:.4g} m"),
-        ("saturated updates", f"{result['saturated_updates']} of {result['updates']}"),
-        *([("answers", result["answers"])] if "answers" in result else []),
     ]
+    if result["updates"]:
+        saturated = f"{result['saturated_updates']} of {result['updates']}"
+        rows.append(("saturated updates", saturated))
+    if "answers" in result:
+        rows.append(("answers", result["answers"]))
+    return rows
 
 
 def _round(values: Any, digits: int) -> List[float]:

@@ -28,6 +28,7 @@ from .built_in import BuiltInController
 from .controller import set_parameter
 from .gains import Gains, make_for_vehicle, read_controller
 from .keywords import ControllerName
+from .plugin_controller import PluginController
 from .rate_and_delay import DELAY, RATE
 from .user_parameters import list_parameters, make_controller
 
@@ -40,7 +41,7 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
     text : str
         ``NAME[:KEY=VALUE,...]`` with parameters, ``rate`` and ``delay`` as keys; a gains file
         (.yaml); or your own controller as ``FILE.py[:NAME]`` or ``MODULE:NAME``, also with
-        ``:KEY=VALUE,...``.
+        ``:KEY=VALUE,...``. The library of a plugin in C++ is ``FILE.so``.
     vehicle : str, optional
         Name of the robot in its URDF. The built-in gains for it become the defaults.
     values : mapping of str to float, optional
@@ -75,12 +76,20 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
     if name in NAMES:
         given = read_values(f"controller '{text}'", rest)
         return _set_all(make_for_vehicle(name, vehicle), {**given, **(values or {})})
+    if names_plugin(text):
+        given = read_values(f"controller '{text}'", split_name(text).values)
+        return PluginController(split_name(text).place, {**given, **(values or {})})
     if ":" in text or names_file(text):
         return _make_own(text, values or {})
     raise _core.InputError(
         f"controller '{text}' does not exist.{suggest(text, NAMES)} Choose one of "
         f"{', '.join(NAMES)}, a gains file that ends in .yaml, FILE.py[:NAME], or MODULE:NAME."
     )
+
+
+def names_plugin(text: str) -> bool:
+    """Whether a text names the library of a plugin."""
+    return split_name(text).place.endswith(".so")
 
 
 class FileReader(NamedTuple):
@@ -143,7 +152,7 @@ def read_own(text: str) -> Gains:
     InputError
         As for `parse`, and if the text names an autopilot.
     """
-    if names_added_file(text):
+    if names_added_file(text) or names_plugin(text):
         raise _core.InputError(f"{text}: this controller has no gains to tune. Name another.")
     name, given = split_own(text)
     defaults: Dict[str, float] = {}

@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import Any, Callable, Dict
 
 from .. import _core
+from .built_in import BuiltInController
 from .controller import SENSED, check_callable
+from .plugin_controller import PluginController
 from .vehicle import Vehicle
 
 PRIVILEGED = " (privileged)"
-"""Mark in the label of a controller that receives the whole simulation."""
+"""Mark in the label of a controller that has access to the whole simulation."""
 
 
 class FairController:
@@ -46,6 +48,16 @@ class FairController:
     def __call__(self, t: float, state: _core.Odometry, reference: Any) -> Any:
         """Call the controller."""
         return self._controller(t, state, reference)
+
+
+def restrict(controller: Any) -> Any:
+    """Return a controller that receives a view of the vehicle.
+
+    Built-in controllers need no view. Those in plugins cannot be restricted, see `PRIVILEGED`.
+    """
+    if isinstance(controller, (BuiltInController, PluginController)):
+        return controller
+    return FairController(controller)
 
 
 class SensedOdometry(_core.Odometry):

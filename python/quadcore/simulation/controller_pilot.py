@@ -16,15 +16,16 @@ from ..control.fair_controller import make_sense
 from ..control.inner_loop import SET_POINTS, InnerLoop
 from ..control.keywords import ReferenceName
 from ..control.own_columns import OwnColumns
+from ..control.plugin_controller import PluginController
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
 from ..control.reference_ahead import add_future
 from ..control.vectorized import CommandAll, command_one, is_vectorized
 from ..support.arguments import shorten
 from ..support.user_code import describe_error
-from .flight import Pilot
+from .reference_pilot import PluginPilot, ReferencePilot
 
 
-class ControllerPilot(Pilot):
+class ControllerPilot(ReferencePilot):
     """Pilot (see `flight.fly`) that calls a controller with odometry and reference.
 
     Attributes
@@ -49,15 +50,7 @@ class ControllerPilot(Pilot):
     ) -> None:
         if isinstance(controller, str):
             controller = controllers.parse(controller, simulation.model.name)
-        if isinstance(reference, str):
-            reference = references.parse(reference)
-        if isinstance(reference, references.Shape):
-            reference = reference.on(simulation)
-        if reference is not None and not callable(reference):
-            raise InputError(
-                f"reference is {shorten(reference)}. Give one of quadcore.references, or a "
-                "function that is called as reference(t)."
-            )
+        super().__init__(simulation, reference)
         check_callable(controller)
         self.is_vectorized = is_vectorized(controller)
         self.rate = check_rate_or_delay("controller", "rate", getattr(controller, "rate", RATE))
@@ -69,9 +62,8 @@ class ControllerPilot(Pilot):
             )
         self._inner_loop = InnerLoop() if inner_loop is None else inner_loop
         self._own_columns = OwnColumns(controller)
-        self.columns = (*(_COLUMNS if reference is not None else ()), *self._own_columns.columns)
+        self.columns = (*self.columns, *self._own_columns.columns)
         self._controller: Any = controller
-        self._reference = reference
         self._timed = timed
         self._loop: Optional[_core.ControlLoop] = None
         self._reported = 0  # saturated calls of a built-in controller that Python calls
@@ -210,24 +202,22 @@ class ControllerPilot(Pilot):
 
     def add_columns(self, table: np.ndarray) -> np.ndarray:
         """Add the columns of the reference and of the controller to rows of the state."""
-        parts = [table]
-        if self._reference is not None:
-            wanted = self.sample(table[:, 0])
-            parts += [wanted, table[:, 1:4] - wanted[:, :3]]
-        if self._own_columns.columns:
-            parts.append(self._own_columns.sample(table[:, 0]))
-        return table if len(parts) == 1 else np.hstack(parts)
-
-    def sample(self, times: np.ndarray) -> np.ndarray:
-        """Return position and yaw of the reference at times; shape (n, 4)."""
-        assert self._reference is not None
-        return references.sample_positions(self._reference, times)
+        whole = super().add_columns(table)
+        if not self._own_columns.columns:
+            return whole
+        return np.hstack([whole, self._own_columns.sample(table[:, 0])])
 
 
-_COLUMNS = (
-    *(f"reference.{name}" for name in ("x", "y", "z", "yaw")),
-    *(f"error.{name}" for name in ("x", "y", "z")),
-)
+def make_pilot(
+    controller: ControllerLike,
+    simulation: _core.Simulation,
+    reference: Union[references.ReferenceLike, ReferenceName, None] = None,
+    timed: bool = False,
+) -> Union[ControllerPilot, PluginPilot]:
+    """Make the pilot of a controller; raises as `ControllerPilot` does."""
+    if isinstance(controller, PluginController):
+        return PluginPilot(controller, simulation, reference)
+    return ControllerPilot(controller, simulation, reference, timed)
 
 
 @contextmanager

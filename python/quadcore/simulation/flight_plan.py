@@ -27,17 +27,19 @@ from .._core import Model, World
 from ..control import references
 from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike
+from ..control.plugin_controller import PluginController
 from ..control.references import ReferenceLike
 from ..model.description import read_both
 from ..model.overrides import apply_link_values, check_names, split_xacro_arguments
 from ..support.values import SPAWN, Number, Value, check_pose, check_whole, format_value
 from ..support.warning import suppress_warnings, warn
 from .commands import CommandsLike, check_commands
-from .controller_pilot import ControllerPilot
+from .controller_pilot import ControllerPilot, make_pilot
 from .engines import ENGINE, AnyEngineName
 from .flight import Progress
 from .log import Log
-from .scenarios import Scenario, add_wind
+from .reference_pilot import PluginPilot
+from .scenarios import Scenario, add_controller, add_wind
 from .scenarios import read_scenario as read_scenario
 from .simulation import Simulation, make_simulation
 from .state import State
@@ -290,7 +292,9 @@ class FlightPlan:
         spins = self.controller.spins if isinstance(self.controller, BuiltInController) else ()
         return references.start(simulation, self.reference, spins)
 
-    def pilot(self, simulation: Simulation, timed: bool = False) -> Optional[ControllerPilot]:
+    def pilot(
+        self, simulation: Simulation, timed: bool = False
+    ) -> Union[ControllerPilot, PluginPilot, None]:
         """Make the pilot that calls the controller, if any; raises as `Simulation.run` does.
 
         Parameters
@@ -302,7 +306,7 @@ class FlightPlan:
         """
         if self.controller is None:
             return None
-        return ControllerPilot(self.controller, simulation, self.reference, timed)
+        return make_pilot(self.controller, simulation, self.reference, timed)
 
     def fly(self, progress: Optional[Progress] = None) -> Log:
         """Simulate the flight; raises and warns as `Simulation` and `Simulation.run` do.
@@ -361,7 +365,10 @@ class FlightPlan:
 
     def _vehicle(self) -> Dict[str, Any]:
         names = ("model", "world", "engine", "dt", "seed", "parameters", "spawn")
-        return {name: getattr(self, name) for name in names}
+        vehicle = {name: getattr(self, name) for name in names}
+        if isinstance(self.controller, PluginController):
+            vehicle["model"] = add_controller(self.model, self.controller)
+        return vehicle
 
     def _describe(self) -> Dict[str, Any]:
         values = {item.name: getattr(self, item.name) for item in fields(self)}

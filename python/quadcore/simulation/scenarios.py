@@ -17,6 +17,7 @@ from xml.sax.saxutils import escape, quoteattr
 import yaml
 
 from .._core import Document, InputError, Model, read_model
+from ..control.plugin_controller import NAME, PluginController
 from ..model import resources
 from ..support.input_files import check_regular, is_file
 from ..support.output_files import printable_name
@@ -172,6 +173,15 @@ def add_wind(model: Model, velocity: Sequence[float]) -> Tuple[Model, Dict[str, 
     wind = PluginEntry("wind", "libwind_plugin.so", 1, [Tag("velocity", text, 1)])
     document = _insert_plugins(model.document, end, [wind], "--wind")
     return read_model(document, list(model.ignored_elements.ignored)), {}
+
+
+def add_controller(model: Model, controller: PluginController) -> Model:
+    """Add the plugin of a controller to a model."""
+    _, end = _find_plugins(model.document.text)
+    tags = [Tag(name, repr(value), 1) for name, value in controller.tags.items()]
+    entry = PluginEntry(NAME, controller.file, 1, tags)
+    document = _insert_plugins(model.document, end, [entry], controller.file)
+    return read_model(document, list(model.ignored_elements.ignored))
 
 
 def read_scenario(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:

@@ -21,7 +21,7 @@ from ..support.arguments import PROGRESS, check, or_none
 from ..support.rotation import to_roll_pitch_yaw
 from ..support.values import SPAWN, Number, Value, check_pose, check_whole, format_value
 from ..support.warning import warn
-from .controller_pilot import ControllerPilot
+from .controller_pilot import make_pilot
 from .engines import ENGINE, EngineName, check_engine_and_step, find_added_engine
 from .flight import Progress, Rows, fly, list_columns
 from .log import Log
@@ -259,7 +259,7 @@ class Simulation(_core.Simulation):
             reference = self._start_on(controller, reference)
         names = check_names_argument("topics", topics)
         check({"progress": progress}, {"progress": or_none(PROGRESS)})
-        pilot = None if controller is None else ControllerPilot(controller, self, reference)
+        pilot = None if controller is None else make_pilot(controller, self, reference)
         rows = Rows(self, list_columns(self, names, pilot))
         try:
             fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot, names)

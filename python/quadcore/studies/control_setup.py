@@ -10,7 +10,7 @@ from .._core import InputError
 from ..control import controllers, gains, references
 from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike, check_callable, set_parameter
-from ..control.fair_controller import PRIVILEGED, FairController
+from ..control.fair_controller import PRIVILEGED, restrict
 from ..control.keywords import ReferenceName
 from ..control.rate_and_delay import DELAY
 from ..control.references import ReferenceLike
@@ -60,7 +60,7 @@ class ControlSetup:
     ) -> None:
         self.privileged = privileged
         self.controllers = [
-            label + PRIVILEGED if privileged and _is_user_code(thing) else label
+            label + PRIVILEGED if _is_privileged(thing, privileged) else label
             for label, thing in controllers
         ]
         self.references = [label for label, _ in references_]
@@ -127,9 +127,7 @@ class ControlSetup:
                 (controller, vehicle), float(getattr(made, "delay", DELAY))
             )
             set_parameter(made, "delay", given.get("delay", own) + time)
-        if self.privileged is False and not isinstance(made, BuiltInController):
-            return FairController(made)
-        return made
+        return restrict(made) if self.privileged is False else made
 
     def guide(self, plan: FlightPlan) -> FlightPlan:
         """Add the only controller and reference to a plan."""
@@ -176,7 +174,7 @@ def names_user_code(thing: Any) -> bool:
     """Whether a text names a user-defined controller."""
     if not isinstance(thing, str):
         return False
-    if controllers.names_added_file(thing):
+    if controllers.names_added_file(thing) or controllers.names_plugin(thing):
         return True
     if controllers.names_gains_file(thing):
         return gains.read(thing).law not in controllers.NAMES
@@ -189,6 +187,13 @@ def _is_user_code(thing: Any) -> bool:
         if isinstance(thing, str)
         else not isinstance(thing, BuiltInController)
     )
+
+
+def _is_privileged(thing: Any, privileged: Optional[bool]) -> bool:
+    """Whether a study marks a controller; plugins in C++ have access to the whole simulation."""
+    if isinstance(thing, str) and controllers.names_plugin(thing):
+        return privileged is not None
+    return bool(privileged) and _is_user_code(thing)
 
 
 def set_parameters(controller: Any, values: Mapping[str, Any]) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from ..simulation.flight import count_steps
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.guided_logs import GuidedLogs
 from ..simulation.log import Log
+from ..simulation.reference_pilot import PluginPilot
 from ..simulation.state import State
 from ..simulation.trajectory import find_speed_limit
 from ..support.warning import suppress_warnings
@@ -44,9 +45,9 @@ class FlightRecord(NamedTuple):
     """Reason of a failure; "" for success."""
     calls: int
     """Number of calls of the controller."""
-    saturated: int
-    """Those with a command that the rotors could not follow."""
-    variation: Tuple[np.ndarray, np.ndarray]
+    saturated: float
+    """Those with a command that the rotors could not follow; NaN if unknown."""
+    variation: Optional[Tuple[np.ndarray, np.ndarray]]
     """As in `ControllerPilot.variation`."""
     seconds: np.ndarray
     """Duration of some of the calls, s."""
@@ -72,7 +73,7 @@ class FlightRecord(NamedTuple):
 
 
 def make_record(
-    pilot: ControllerPilot, simulation: Any, plan: FlightPlan, **results: Any
+    pilot: Union[ControllerPilot, PluginPilot], simulation: Any, plan: FlightPlan, **results: Any
 ) -> FlightRecord:
     """Make the record of a flight from its pilot, its simulation and its plan.
 
@@ -192,7 +193,7 @@ class _Kind:
         if simulation.time != 0:
             raise QuadcoreError("flights in a saved world are simulated alone")
         pilot = plan.pilot(simulation)
-        assert pilot is not None
+        assert isinstance(pilot, ControllerPilot)
         pilot.reset(simulation)
         self.guide = pilot.built_in if pilot.is_built_in else None
         self.plan, self.pilot = plan, pilot

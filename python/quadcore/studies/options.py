@@ -296,7 +296,7 @@ class EvaluateKeywords(CriteriaKeywords, total=False):
 
 
 @dataclass(frozen=True)
-class MeasureOptions(Options):
+class MeasureOptions(CriteriaOptions):
     """Options of `measure`."""
 
     duration: Optional[float] = field(  # type: ignore[assignment]

@@ -23,7 +23,7 @@ class SplitName(NamedTuple):
     """Parts of the name of a user-defined controller."""
 
     place: str
-    """Module, or file that ends in .py."""
+    """Module, or file that ends in .py or .so."""
     name: str
     """Name in it; "" if it is not given."""
     values: str
@@ -35,7 +35,7 @@ def split_name(text: str) -> SplitName:
     head, colon, values = text.rpartition(":")
     if not (colon and "=" in values):
         head, values = text, ""
-    if head.endswith(".py"):
+    if head.endswith((".py", ".so")):
         return SplitName(head, "", values)
     place, _, name = head.rpartition(":")
     return SplitName(place, name, values)

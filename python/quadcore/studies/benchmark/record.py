@@ -13,6 +13,7 @@ import numpy as np
 
 from ... import __version__
 from ...control import controllers, gains
+from ...control.plugin_controller import find_library
 from ...support.input_files import read_bytes
 from ...support.user_code import split_name
 from ..control_setup import ControlSetup, names_user_code
@@ -61,6 +62,8 @@ def find_source(thing: Any) -> Optional[Path]:
         return find_source(gains.read(thing).law)
     if isinstance(thing, str) and names_user_code(thing):
         place = split_name(thing).place
+        if controllers.names_plugin(thing):
+            return find_library(place)
         if Path(place).suffix:
             return Path(place)
         spec = importlib.util.find_spec(place)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+import math
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import (
     TYPE_CHECKING,
@@ -21,13 +22,12 @@ from ..._core import InputError
 from ...simulation.engines import STUDY_ENGINE, AnyEngineName
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
-from ...simulation.simulation import Simulation
 from ...support import arguments
 from ...support.warning import suppress_warnings
 from ..cases import Case
 from ..control_setup import Controllers, make_reference
 from ..measured_flight import Outcome
-from ..options import EvaluateOptions, Keywords, MeasureOptions, Progress, accept_options
+from ..options import CriteriaKeywords, EvaluateOptions, MeasureOptions, Progress, accept_options
 from .evaluate import Evaluation, fly_plan
 from .plan import Plan
 from .recorded_flight import Alignment, RecordedFlight, align_flight, read_recorded_flight
@@ -91,7 +91,9 @@ class MeasurePlan(Plan):
                 f"{len(alignments)} alignments are given for {len(request.logs)} logs. Give one "
                 "for all, or one for each."
             )
-        vehicle = _make_vehicle(request, options)
+        described = _describe_vehicle(request, options)
+        with suppress_warnings():  # the plan gives them
+            vehicle = described.simulation()
         reference = make_reference(request.reference)
         known = reference.on(vehicle) if hasattr(reference, "on") else reference
         self.recordings: List[RecordedFlight] = []
@@ -100,8 +102,11 @@ class MeasurePlan(Plan):
             self.recordings.append(
                 align_flight(label, file, log, known, alignment, options.duration)
             )
-        outcomes = [each.measure(vehicle) for each in self.recordings]
-        self.recorded_outcomes: List[Outcome] = outcomes
+        described = replace(described, reference=known)
+        criteria = options.make_criteria()
+        self.recorded_outcomes: List[Outcome] = [
+            each.measure(described, vehicle, criteria) for each in self.recordings
+        ]
         longest = max(float(each.log.time[-1]) for each in self.recordings)
         given_options = {each.name: getattr(options, each.name) for each in fields(options)}
         super().__init__(
@@ -171,7 +176,7 @@ def measure(
     mapping: Union[str, Path, None] = None,
     model: Union[str, Path] = "quadrotor",
     engine: AnyEngineName = STUDY_ENGINE,
-    **options: Unpack[Keywords],
+    **options: Unpack[CriteriaKeywords],
 ) -> Evaluation:
     """Measure the tracking error of recorded flights, next to simulated ones.
 
@@ -238,12 +243,18 @@ def add_recordings(simulated: Evaluation, plan: MeasurePlan) -> Evaluation:
     names = [*(plan.name_case(case) for case in plan), *recorded]
     keys = [(labels.index(name["controller"]), int(name["engine"] == RECORDED)) for name in names]
     outcomes = [*simulated.outcomes, *plan.recorded_outcomes]
+    units = plan.criteria.units
     table = [
-        {**name, "failure": outcome.failure, **outcome.measures}
+        {
+            **name,
+            "failure": outcome.failure,
+            **dict.fromkeys(units, math.nan),
+            **outcome.measures,
+        }
         for name, outcome in zip(names, outcomes)
     ]
-    groups = summarise_seeds(keys, names, outcomes)
-    return Evaluation(table, groups, simulated.margins, simulated.poles, outcomes)
+    groups = summarise_seeds(keys, names, outcomes, units)
+    return Evaluation(table, groups, simulated.margins, simulated.poles, outcomes, units)
 
 
 def label_logs(logs: Files) -> List[Tuple[str, File]]:
@@ -263,7 +274,7 @@ def _to_list(logs: Any) -> List[File]:
     return found
 
 
-def _make_vehicle(request: Request, options: MeasureOptions) -> Simulation:
+def _describe_vehicle(request: Request, options: MeasureOptions) -> FlightPlan:
     with suppress_warnings():  # the plan gives them
         return FlightPlan.of(
             request.model,
@@ -272,4 +283,4 @@ def _make_vehicle(request: Request, options: MeasureOptions) -> Simulation:
             options.ignore,
             options.parameters,
             engine=request.engine,
-        ).simulation()
+        )

@@ -25,6 +25,7 @@ from .animations import make_animations, write_drawn_flights
 from .best_controllers import describe_seeds
 from .computation_times import summarise_computation_times
 from .evaluate import Evaluation
+from .failure_causes import explain_failures
 from .intervals import CONFIDENCE
 from .loop_table import choose_headings, format_loops, make_plain
 from .margins import BOX, ENDS, format_margin
@@ -85,6 +86,7 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     page = folder / "report.html"
     animations = make_animations(evaluation, plan) if plots else []
     values = _page_values(evaluation, plan, images)
+    values["notes"] += explain_failures(evaluation, plan)
     if step_error is not None:
         values["notes"].append(step_error.describe())
     settings = _list_settings(plan)

@@ -18,15 +18,19 @@ mass. Controllers that compensate drag subtract the same wrench, from the measur
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, List
+from typing import TYPE_CHECKING, Any, Dict, List
 
 import numpy as np
 
 from ... import _core
+from ..._core import QuadcoreError
 from ...control.built_in import BuiltInController
 from ...simulation.engines import exerts_wrenches
 from ...simulation.simulation import Simulation
 from .linear_loops import Loop, make_loops, make_yaw, measure_drag
+
+if TYPE_CHECKING:
+    from ...thesis.chapter2 import Vehicle
 
 
 def read_gains(controller: BuiltInController) -> Dict[str, float]:
@@ -75,11 +79,7 @@ def compute_poles(controller: BuiltInController, simulation: Simulation) -> List
     inertia = float(np.mean(vehicle.rotor_inertia))
     lag = inertia / vehicle.motor_gain
     drag = measure_drag(simulation) if exerts_wrenches(simulation.engine) else vehicle.linear_drag
-    zero = math.inf
-    if exerts_wrenches(simulation.engine):
-        weight = vehicle.mass * float(np.linalg.norm(vehicle.gravity))
-        hover = math.sqrt(weight / (len(vehicle.arms) * vehicle.k))
-        zero = 2 * vehicle.b * hover * vehicle.slow / inertia
+    zero = _compute_zero(vehicle) if exerts_wrenches(simulation.engine) else math.inf
     if gains["lead"]:
         lag = min(lag, gains["lead_time"])
     loops = make_loops(gains, vehicle, drag, lag)
@@ -91,6 +91,39 @@ def compute_poles(controller: BuiltInController, simulation: Simulation) -> List
         _make_row(axis, loop, zero if axis == "yaw" else math.inf, causes.get(axis, ""), known)
         for axis, loop in loops.items()
     ]
+
+
+def find_yaw_zero(simulation: Simulation) -> float:
+    """Return the zero of the yaw dynamics in hover, 1/s; infinite without one.
+
+    The simulation describes vehicle and engine. Vehicles that chapter 2 cannot describe have none.
+    """
+    from ...thesis.chapter2 import Vehicle  # scipy is slow to import
+
+    try:
+        vehicle = Vehicle.of(simulation)
+    except QuadcoreError:
+        return math.inf
+    return _compute_zero(vehicle) if exerts_wrenches(simulation.engine) else math.inf
+
+
+def describe_yaw_zero(zero: float) -> str:
+    """Describe a zero in the right half-plane, and its effect on gains; "" for any other."""
+    if not 0 < zero < math.inf:
+        return ""
+    return (
+        f"the yaw dynamics have a zero at +{zero:.3g} 1/s: rotors that spin up first turn the "
+        "vehicle the wrong way. A faster yaw loop is unstable, so attitude gains that are equal on "
+        "all axes can crash it. Use lower gains for yaw."
+    )
+
+
+def _compute_zero(vehicle: Vehicle) -> float:
+    """Return z = 2 b w_0 sim_slow / I_R, 1/s."""
+    weight = vehicle.mass * float(np.linalg.norm(vehicle.gravity))
+    hover = math.sqrt(weight / (len(vehicle.arms) * vehicle.k))
+    zero: float = 2 * vehicle.b * hover * vehicle.slow / float(np.mean(vehicle.rotor_inertia))
+    return zero if zero else math.inf
 
 
 def _explain_xy(gains: Dict[str, float]) -> str:

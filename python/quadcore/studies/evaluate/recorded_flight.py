@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple, Union
 
@@ -11,17 +12,18 @@ from ..._core import InputError, Rotor
 from ...control import references
 from ...formats.recordings.recording import interpolate_orientation
 from ...formats.recordings.series import Series
-from ...model.visuals import read_vehicle
 from ...report.decimation import decimate
-from ...simulation.clearance import Clearance
+from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...simulation.simulation import Simulation
 from ...simulation.trajectory import find_speed_limit
 from ...support.output_files import printable_name
-from ...support.warning import suppress_warnings, warn
-from ..measured_flight import NAN, Outcome
-from ..step_response import step_response
-from ..tracking_metrics import describe_failure, measure
+from ...support.warning import warn
+from ..criteria import Criteria
+from ..grouped_flights import FlightRecord
+from ..measured_flight import Outcome, measure_record
+from ..tracking_errors import sample_flat_states
+from ..tracking_metrics import RotorData
 
 FIND = "find"
 """Alignment that is searched."""
@@ -59,31 +61,39 @@ class RecordedFlight(NamedTuple):
         rows += "" if self.was_even else ", interpolated because those of the file are uneven"
         return f"{self.file}: the reference begins at {self.begin:.4g} s of the log, {how}; {rows}."
 
-    def measure(self, simulation: Simulation) -> Outcome:
-        """Compute the metrics; the simulation describes vehicle and world."""
-        rotors, log = simulation.rotors, self.log
-        failure = describe_failure(log)
-        measures = NAN
-        if not failure:
-            clearance = Clearance(simulation.model, simulation.world)
-            clearance.receive(log.table, np.empty(0))
-            measures = {
-                **NAN,
-                **measure(_add_rotors(self.file, log, rotors), np.nan, rotors),
-                **clearance.measures(),
-            }
-            if not log.rotor_velocity.shape[1]:
-                measures.update(effort=np.nan, energy=np.nan)
-        with suppress_warnings():
-            vehicle = read_vehicle(simulation.model)
-        return Outcome(
-            failure,
-            measures,
-            log=decimate(log),
-            response=None if failure else step_response(log),
-            limit=find_speed_limit(rotors),
-            vehicle=vehicle,
+    def make_record(
+        self, plan: FlightPlan, simulation: Simulation, needs_flat_states: bool
+    ) -> FlightRecord:
+        """Make the record of the flight; plan and simulation describe vehicle and world."""
+        log, flat_states = _add_rotors(self.file, self.log, simulation.rotors), None
+        if needs_flat_states:
+            flat_states = sample_flat_states(simulation, plan, log.time)
+        return FlightRecord(
+            log=log,
+            failure="",
+            calls=0,
+            saturated=math.nan,
+            variation=None,
+            seconds=np.empty(0),
+            warnings=[],
+            rate=math.nan,
+            delay=math.nan,
+            is_vectorized=False,
+            rotors=[RotorData.of(rotor) for rotor in simulation.rotors],
+            limit=find_speed_limit(simulation.rotors),
+            model=plan.model,
+            world=plan.world,
+            elapsed=math.nan,
+            flat_states=flat_states,
         )
+
+    def measure(self, plan: FlightPlan, simulation: Simulation, criteria: Criteria) -> Outcome:
+        """Compute the metrics; plan and simulation describe vehicle and world."""
+        record = self.make_record(plan, simulation, criteria.needs_flat_states)
+        outcome = measure_record(record, criteria, keep=True)
+        if outcome.flew and not self.log.rotor_velocity.shape[1]:
+            outcome.measures.update(effort=math.nan, energy=math.nan)
+        return outcome._replace(log=decimate(self.log))
 
 
 def read_recorded_flight(label: str, given: Union[str, Path, Log], mapping: Any) -> Tuple[str, Log]:

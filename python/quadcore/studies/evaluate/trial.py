@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
-from ..._core import ParameterInfo, parse_number
+from ..._core import InputError, ParameterInfo, parse_number
 from ...control.built_in import BuiltInController
 from ...control.controller import check_callable, set_parameter
 from ...control.fair_controller import FairController
 from ...control.inner_loop import InnerLoop
+from ...control.plugin_controller import PluginController
 from ...control.vehicle import Vehicle
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.simulation import Simulation
@@ -44,6 +45,11 @@ class Trial(NamedTuple):
     def make_plan(self, plan: Cases) -> FlightPlan:
         """Make the plan of the flight; errors of the controller pass through."""
         flight = plan.make_plan(Case(self.controller))
+        if isinstance(flight.controller, PluginController):
+            raise InputError(
+                f"controller '{flight.controller.file}': a plugin models the changed vehicle. "
+                "Search margins of other controllers."
+            )
         if self.kicked:
             flight = _KickedPlan(
                 **{each.name: getattr(flight, each.name) for each in fields(flight)}

@@ -12,8 +12,8 @@ from typing import Any, Callable, Mapping, NamedTuple, Optional, Protocol, Tuple
 
 from ..._core import FlightError, InputError, QuadcoreError
 from ...control import controllers
-from ...control.built_in import BuiltInController
-from ...control.fair_controller import FairController
+from ...control.fair_controller import restrict
+from ...control.plugin_controller import find_library
 from ...report.decimation import decimate
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
@@ -53,8 +53,7 @@ class UserController:
     def make(self, vehicle: str) -> Any:
         """Import and make the controller; raises `InputError`."""
         made = controllers.parse(self.text, vehicle, dict(self.values))
-        is_free = self.privileged or isinstance(made, BuiltInController)
-        return made if is_free else FairController(made)
+        return made if self.privileged else restrict(made)
 
 
 @dataclass(frozen=True)
@@ -223,6 +222,8 @@ def compute_digest(data: bytes) -> str:
 
 def read_source(module: str) -> bytes:
     """Return the text of a module or file without importing it; empty if it cannot be found."""
+    if controllers.names_plugin(module):
+        return find_library(module).read_bytes()
     loaded = sys.modules.get(module)
     origin = module if module.endswith(".py") else getattr(loaded, "__file__", None)
     if origin is None:

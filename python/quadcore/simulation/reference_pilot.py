@@ -1,0 +1,117 @@
+"""Pilots that follow a reference, and those of controllers in plugins."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from .. import _core
+from .._core import InputError
+from ..control import references
+from ..control.keywords import ReferenceName
+from ..control.plugin_controller import PluginController
+from ..support.arguments import shorten
+from .flight import Pilot
+
+TOPIC = "reference"
+
+
+class ReferencePilot(Pilot):
+    """Pilot (see `flight.fly`) that adds reference and tracking error to the log.
+
+    Attributes
+    ----------
+    columns : sequence of str
+        Names of the columns that the log has for the reference.
+    """
+
+    def __init__(
+        self,
+        simulation: _core.Simulation,
+        reference: Union[references.ReferenceLike, ReferenceName, None],
+    ) -> None:
+        if isinstance(reference, str):
+            reference = references.parse(reference)
+        if isinstance(reference, references.Shape):
+            reference = reference.on(simulation)
+        if reference is not None and not callable(reference):
+            raise InputError(
+                f"reference is {shorten(reference)}. Give one of quadcore.references, or a "
+                "function that is called as reference(t)."
+            )
+        self.columns = _COLUMNS if reference is not None else ()
+        self._reference = reference
+
+    def add_columns(self, table: np.ndarray) -> np.ndarray:
+        """Add the columns of the reference to rows of the state."""
+        if self._reference is None:
+            return table
+        wanted = self.sample(table[:, 0])
+        return np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
+
+    def sample(self, times: np.ndarray) -> np.ndarray:
+        """Return position and yaw of the reference at times; shape (n, 4)."""
+        assert self._reference is not None
+        return references.sample_positions(self._reference, times)
+
+
+_COLUMNS = (
+    *(f"reference.{name}" for name in ("x", "y", "z", "yaw")),
+    *(f"error.{name}" for name in ("x", "y", "z")),
+)
+
+
+class PluginPilot(ReferencePilot):
+    """Pilot of a vehicle with a controller plugin, which publishes the reference in each step.
+
+    The calls of the plugin are unknown: rate, delay and saturated calls are NaN.
+    """
+
+    rate = delay = saturated = math.nan
+    updates = 0
+    is_vectorized = False
+    summary = ""
+    variation: Optional[Tuple[np.ndarray, np.ndarray]] = None
+    seconds: Sequence[float] = ()
+
+    def __init__(
+        self,
+        controller: PluginController,
+        simulation: _core.Simulation,
+        reference: Union[references.ReferenceLike, ReferenceName, None],
+    ) -> None:
+        super().__init__(simulation, reference)
+        topics = simulation.topics
+        if "vel_cmd" not in topics or topics["vel_cmd"].writer is None:
+            controller(0.0, None, None)
+        topic = topics.get(TOPIC)
+        if topic is None or topic.kind != "reference":
+            raise InputError(
+                f"controller '{controller.file}': it reads no reference from topic '{TOPIC}'. "
+                "Let it read one."
+            )
+
+    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], None]:
+        """Return the function that publishes the reference and advances a flight."""
+        reference: Any = self._reference
+
+        def advance(steps: int) -> None:
+            for _ in range(steps):
+                if reference is not None:
+                    simulation.publish(TOPIC, _list_fields(reference(simulation.time)))
+                flight.advance(1)
+
+        return advance
+
+
+def _list_fields(wanted: Any) -> Sequence[float]:
+    """List the fields of a message of kind ``reference``."""
+    vectors = (wanted.position, wanted.velocity, wanted.acceleration, wanted.jerk, wanted.snap)
+    return [
+        *(float(value) for vector in vectors for value in vector),
+        float(wanted.yaw),
+        float(wanted.yaw_rate),
+        float(wanted.yaw_acceleration),
+    ]
