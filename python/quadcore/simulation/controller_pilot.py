@@ -94,7 +94,7 @@ class ControllerPilot(ReferencePilot):
 
     @property
     def summary(self) -> str:
-        """What the controller reports of its last flight; "" for most."""
+        """Text that the controller reports of its last flight; "" for most controllers."""
         return str(getattr(self._controller, "summary", ""))
 
     @property

@@ -12,7 +12,7 @@ from .trajectory import per_command
 
 
 class GuidedLogs:
-    """Logs of flights of one vehicle under one pilot, whose rows begin at the same times.
+    """Logs of flights of one vehicle under one pilot, with rows at the same times.
 
     Parameters
     ----------
