@@ -8,21 +8,23 @@
 #include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
+
+/// Compensation of the motors' lag.
+struct MotorLead {
+  bool lead;
+  double time;  ///< that remains, s
+};
+
 namespace {
 
 using T = TagSpec;
 
-struct Lead {
-  bool lead;
-  double time;
-};
-
-const Settings<Lead>& lead_settings() {
-  static const Settings<Lead> all = {
-      {T::flag("lead", "true", "whether to compensate the motors' lag"), &Lead::lead},
+const Settings<MotorLead>& lead_settings() {
+  static const Settings<MotorLead> all = {
+      {T::flag("lead", "true", "whether to compensate the motors' lag"), &MotorLead::lead},
       {T::number("lead_time", "s", "0.01", "time constant that remains after the compensation")
            .above(0),
-       &Lead::time},
+       &MotorLead::time},
   };
   return all;
 }
@@ -35,7 +37,7 @@ using Row = ActuationRow;
 struct Actuation::Numbers {
   std::vector<RotorNumbers<double>> rotors;
   std::vector<double> lags;  ///< s
-  Lead lead;
+  MotorLead lead;
 };
 
 const std::vector<TagSpec>& Actuation::table() {
@@ -126,7 +128,7 @@ bool Actuation::lead(double period, double* state, double* speeds) const {
 }
 
 void Actuation::find_shares(double period, double* state) const {
-  const Lead& lead = numbers_->lead;
+  const MotorLead& lead = numbers_->lead;
   double* const shares = state + Row::shares(numbers_->rotors.size());
   for (std::size_t i = 0; i < numbers_->rotors.size(); ++i) {
     const double lag = numbers_->lags[i];

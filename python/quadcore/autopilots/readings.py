@@ -17,8 +17,10 @@ class Readings(NamedTuple):
     ----------
     time : float
         Time of the reading, s; negative before the flight.
-    position, linear_velocity : ndarray (3,)
-        Position (m) and velocity (m/s) of the frame's origin, world axes.
+    position : ndarray (3,)
+        Position of the frame's origin, world axes, m.
+    linear_velocity : ndarray (3,)
+        Velocity of the frame's origin, world axes, m/s.
     orientation : ndarray (4,)
         Orientation of the frame in the world, unit quaternion x, y, z, w.
     angular_velocity : ndarray (3,)

@@ -110,7 +110,7 @@ def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
 def _describe_control(result: Dict[str, Any]) -> List[Tuple[str, str]]:
     start = ", start in its full state" if result["starts_on_reference"] else ""
     late = f", {result['final_error']:.4g} m (last {TAIL:g} s)" if result["duration"] > TAIL else ""
-    name = result["controller"]
+    name = str(result["controller"])
     if not math.isnan(result["controller_rate"]):  # that of a plugin is its own
         name += f", {result['controller_rate']:g} Hz, delay {result['delay']:g} s"
     rows = [
