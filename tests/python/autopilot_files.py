@@ -3,9 +3,11 @@
 import os
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import pytest
+from processes import LONG
 
 STAND_IN = Path(__file__).with_name("betaflight_stand_in.py")
 PORTS = '"{motors}", "{state}", "{radio}", "{msp}"'
@@ -32,8 +34,11 @@ def nothing_remains(tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(folder))
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
     yield
-    assert list(folder.iterdir()) == []
+    limit = time.monotonic() + LONG
+    while find_processes(folder) and time.monotonic() < limit:  # a process may still be ending
+        time.sleep(0.01)
     assert find_processes(folder) == []
+    assert list(folder.iterdir()) == []
 
 
 def find_processes(folder):
