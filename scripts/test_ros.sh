@@ -54,7 +54,7 @@ copy_sources() {
   rm -rf $workspace/src/quadcore
   mkdir -p $workspace/src/quadcore/tests
   cp -rp CMakeLists.txt LICENSE README.md package.xml pyproject.toml setup.py cpp python launch msg srv \
-    urdf worlds config docs scripts web $workspace/src/quadcore
+    urdf worlds config docs scripts web examples $workspace/src/quadcore
   cp -rp tests/ros $workspace/src/quadcore/tests
   # Messages of others that the distribution lacks.
   local package
@@ -149,7 +149,7 @@ say "running the ROS tests"
 SECONDS=0
 (run_in devel topics services lockstep playing logs log_per_flight clock several parameters faults \
   masters fly_from_python controller controller_faults set_points pid joystick launch plugin_by_others \
-  plugin_topics sensors disturbances markers tutorial rotors rotors_topics rotors_hover gazebo \
+  plugin_topics sensors disturbances markers tutorial lee rotors rotors_topics rotors_hover gazebo \
   gazebo_launch pages refusals links one_world waiting building alarms)
 (run_in install launch playing fly_from_python plugin_by_others)
 [ ! -e $workspace/failed ]

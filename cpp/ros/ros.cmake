@@ -176,7 +176,7 @@ if(CATKIN_ENABLE_TESTING)
     quadcore_add_ros_node(simulink_stand_in tests/ros/simulink_stand_in.cpp)
     foreach(test topics services lockstep playing logs log_per_flight clock several parameters faults
                  masters launch fly_from_python controller controller_faults set_points pid joystick
-                 sensors disturbances markers tutorial rotors rotors_topics rotors_hover gazebo
+                 sensors disturbances markers tutorial lee rotors rotors_topics rotors_hover gazebo
                  gazebo_launch pages refusals links one_world waiting building)
       add_rostest(tests/ros/${test}.test)
     endforeach()
