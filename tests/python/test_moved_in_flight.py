@@ -196,5 +196,7 @@ def test_an_evaluated_controller_that_moves_the_vehicle_is_a_row_that_failed():
             self.simulation.step(1)
             return HOVER
 
-    found = qc.evaluate([Moves()], ["hover"], engines=["eigen"], duration=0.1, processes=1)
+    found = qc.evaluate(
+        [Moves()], ["hover"], engines=["eigen"], duration=0.1, processes=1, privileged=True
+    )
     assert "step(): this simulation is running" in found.table[0]["failure"]

@@ -154,7 +154,7 @@ def test_tables_are_written_before_pictures(toy, monkeypatch):
     def fail(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("quadcore.report.plots.png", fail)
+    monkeypatch.setattr("quadcore.report.plots.finish", fail)
     vary = ["--vary", "motor.kp=1e-4,2e-4", "--duration", "0.01", "--out", "out"]
     assert main(["compare", "toy.urdf", *vary]) == 130
     assert Path("out/table.csv").exists() and Path("out/comparison.json").exists()

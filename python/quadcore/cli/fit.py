@@ -18,14 +18,7 @@ from ..studies.output_folder import output_folder
 from ..support import parse
 from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, reading, terminal
-from .fit_recordings import (
-    DAMAGE,
-    OF_LOGS,
-    fit_damage,
-    fit_real_flights,
-    has_options,
-    refuse_options,
-)
+from .fit_recordings import DAMAGE, fit_damage, fit_real_flights, refuse_options
 from .interrupted_output import keep_partial_output
 from .parser import add_command, find_group
 from .predict import add_force
@@ -142,23 +135,13 @@ def fit_model(arguments: argparse.Namespace) -> None:
         folder = None
     with output_folder(folder, FILES, DOCUMENT):
         out = _find_model_file(arguments, folder)
+        is_real = arguments.mapping is not None or is_recording(Path(arguments.log[0]))
         if arguments.free == [DAMAGE]:
             fit_damage(arguments, out, folder)
-        elif _compares_predictions(arguments):
+        elif len(arguments.log) > 1 or arguments.judge or is_real:
             fit_real_flights(arguments, out, folder, _read_all_bounds(arguments))
         else:
             _fit_log(arguments, out, folder)
-
-
-def _compares_predictions(arguments: argparse.Namespace) -> bool:
-    """Whether to fit by predictions: recordings, several logs, or a log without commands."""
-    from ..studies.fit.record import has_commands
-
-    if len(arguments.log) > 1 or arguments.judge or arguments.mapping is not None:
-        return True
-    if is_recording(Path(arguments.log[0])):
-        return True
-    return not has_options(arguments, OF_LOGS) and not has_commands(arguments.log[0])
 
 
 def _fit_log(arguments: argparse.Namespace, out: Path, folder: Optional[Path]) -> None:

@@ -16,7 +16,7 @@ DAMAGE = "rotors.factor"
 """Name of the free parameter that is the thrust of each rotor."""
 
 _FACTORS = "rotorFactors"
-OF_LOGS = ("commands", "sensed", "channels", "shift", "horizon", "engine", "dt")
+_OF_LOGS = ("commands", "sensed", "channels", "shift", "horizon", "engine", "dt")
 """Options of a fit of one log of quadcore."""
 
 
@@ -44,7 +44,7 @@ def fit_real_flights(
     from ..studies.fit.recorded import fit_recordings
     from .flight_tables import show_fit, show_flights, show_judgement
 
-    refuse_options(arguments, (*OF_LOGS, "sound"), "a fit of several logs or recordings")
+    refuse_options(arguments, (*_OF_LOGS, "sound"), "a fit of several logs or recordings")
     if not arguments.judge:
         refuse_options(arguments, ("force",), "a fit without --judge")
     shared = reading.read_model_arguments(arguments)
@@ -86,7 +86,7 @@ def fit_damage(arguments: argparse.Namespace, out: Path, folder: Optional[Path])
     from ..studies.fit.prepared import read_flight
     from ..studies.fit.rotor_factors import find_rotor_factors
 
-    refuse_options(arguments, (*OF_LOGS, "judge", "bound", "force"), f"--free {DAMAGE}")
+    refuse_options(arguments, (*_OF_LOGS, "judge", "bound", "force"), f"--free {DAMAGE}")
     if not arguments.sound:
         raise InputError(
             f"free {DAMAGE}: name recordings of the undamaged vehicle with --sound FILE."
@@ -156,14 +156,6 @@ def fit_damage(arguments: argparse.Namespace, out: Path, folder: Optional[Path])
 def refuse_options(arguments: argparse.Namespace, names: Sequence[str], what: str) -> None:
     """Refuse options without effect on a fit; the engine of all studies is allowed."""
     for name in names:
-        if has_options(arguments, (name,)):
+        value = getattr(arguments, name)
+        if value not in (None, [], False) and (name, value) != ("engine", STUDY_ENGINE):
             raise InputError(f"--{name} does not apply to {what}. Remove it.")
-
-
-def has_options(arguments: argparse.Namespace, names: Sequence[str]) -> bool:
-    """Whether any of some options is given; the engine of all studies does not count."""
-    values = {name: getattr(arguments, name) for name in names}
-    return any(
-        value not in (None, [], False) and (name, value) != ("engine", STUDY_ENGINE)
-        for name, value in values.items()
-    )

@@ -100,11 +100,6 @@ def read_record(
     )
 
 
-def has_commands(log: Union[str, Path]) -> bool:
-    """Whether the file of a log contains the commands."""
-    return _COMMANDS in Log.of_file(log).topics
-
-
 def choose_channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
     """Return the channels to compare; raises `InputError` for unknown ones."""
     if given is None:
