@@ -62,7 +62,8 @@ class LeePlugin final : public quadcore::Plugin {
   /// Attitude whose z axis points along the force, with a heading.
   static Matrix3d attitude(const Vector3d& f_W, double yaw) {
     const Vector3d z = f_W.normalized();
-    const Vector3d y = z.cross(Vector3d(std::cos(yaw), std::sin(yaw), 0)).normalized();
+    const auto [sine, cosine] = quadcore::elementary::sincos(yaw);
+    const Vector3d y = z.cross(Vector3d(cosine, sine, 0)).normalized();
     Matrix3d R;
     R << y.cross(z), y, z;
     return R;

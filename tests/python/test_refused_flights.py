@@ -91,11 +91,12 @@ LATE = "the flight failed at t = 0.060000 s: step(): this simulation is running"
             f"baseline no. 2 failed: {LATE}",
         ),
         (
-            f"evaluate --controller flies:Late {SPIRAL} --seeds 2",
-            "2 of 2 flights failed. The first one: flies:Late on spiral in eigen, seed 0: " + LATE,
+            f"evaluate --controller flies:Late {SPIRAL} --privileged --seeds 2",
+            "2 of 2 flights failed. The first one: flies:Late (privileged) on spiral in eigen, "
+            f"seed 0: {LATE}",
         ),
         (
-            f"sweep --controller flies:Late {SPIRAL} --seeds 2",
+            f"sweep --controller flies:Late {SPIRAL} --privileged --seeds 2",
             f"2 of 2 flights failed. The first one: row 0: {LATE}",
         ),
     ],
@@ -132,7 +133,7 @@ def test_a_reference_that_is_none_later_ends_a_flight_that_had_begun():
 def test_a_sweep_that_goes_on_with_what_is_there_ends_as_it_did(
     capsys, controllers, status, reasons
 ):
-    command = f"sweep --controller {controllers} {SPIRAL} --seeds 2 --out out".split()
+    command = f"sweep --controller {controllers} {SPIRAL} --privileged --seeds 2 --out out".split()
     assert main(command) == status
     expected, table = capsys.readouterr().err, Path("out/table.csv").read_bytes()
     with open("out/table.csv", newline="") as stream:
