@@ -33,9 +33,9 @@ def element(name, tags):
     return f'<plugin name="{name}" filename="lib{name}_plugin.so">{inside}</plugin>'
 
 
-def with_controller(urdf, options, reference):
+def with_controller(urdf, tags, reference):
     """The vehicle, flown by plugins."""
-    plugins = element("controller", options) + element("reference", reference)
+    plugins = element("controller", tags) + element("reference", reference)
     return urdf.replace("</robot>", f"<gazebo>{plugins}</gazebo></robot>")
 
 
@@ -78,16 +78,16 @@ class TestController(unittest.TestCase):
             ("eigen", {"law": "pid_thesis"}),
         ]
         start = ("_x:=1", "_roll:=0.3", "_seed:=7")
-        for engine, options in cases:
-            with self.subTest(engine=engine, **options):
+        for engine, tags in cases:
+            with self.subTest(engine=engine, **tags):
                 plugin, node = self.folder / "plugin.csv", self.folder / "node.csv"
                 bare = description(**NOISY)
                 options = (*start, f"_engine:={engine}")
-                urdf = with_controller(bare, options, CIRCLE)
+                urdf = with_controller(bare, tags, CIRCLE)
                 with flight("_paused:=true", *options, f"_log:={plugin}", urdf=urdf):
                     step(STEPS)
                 answered = flight(*LOCKSTEP, *options, f"_log:={node}", urdf=bare)
-                with answered, controller(CIRCLE, **options):
+                with answered, controller(CIRCLE, **tags):
                     step(STEPS)
                 self.assertEqual(len(node.read_text().splitlines()), STEPS + 2)
                 self.assertEqual(node.read_bytes(), plugin.read_bytes())

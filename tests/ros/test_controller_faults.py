@@ -36,7 +36,7 @@ class TestControllerFaults(unittest.TestCase):
             rospy.delete_param("/quadcore")
         rospy.set_param("/robot_description", description())
 
-    def warnings(self):
+    def collect_warnings(self):
         """Collect the warnings of nodes from now on."""
         return self.stack.enter_context(Recording("/rosout", Log))
 
