@@ -79,7 +79,7 @@ void Batch::Implementation::come_back(std::size_t i) {
   is_apart_[i] = false;
 }
 
-void Batch::Implementation::go_on_apart(std::size_t i, bool told, std::int64_t steps) {
+void Batch::Implementation::go_on_apart(std::size_t i, bool has_commands, std::int64_t steps) {
   Member& member = members_[i];
   Simulation& simulation = go_apart(i);
   if (member.in_lanes) {
@@ -90,8 +90,8 @@ void Batch::Implementation::go_on_apart(std::size_t i, bool told, std::int64_t s
   }
   try {
     // For a vehicle that is never in the lanes, the simulation stores the command and its time.
-    const bool forgot = member.in_lanes && is_commanded_[i];
-    if (told || forgot) simulation.command(command_of(i), command_width());
+    const bool lacks_command = member.in_lanes && is_commanded_[i];
+    if (has_commands || lacks_command) simulation.command(command_of(i), command_width());
     simulation.step(steps);
   } catch (const FlightError& error) {
     failures_[i] = error.what();

@@ -83,8 +83,8 @@ class Batch::Implementation {
 
   void come_back(std::size_t i);
 
-  /// \param told  whether this call has commands
-  void go_on_apart(std::size_t i, bool told, std::int64_t steps);
+  /// \param has_commands  whether this call has commands
+  void go_on_apart(std::size_t i, bool has_commands, std::int64_t steps);
 
   /// Fly a vehicle from its start in its own simulation.
   void follow_apart(std::size_t i, const BatchGuide& guide, const std::string& odometry,

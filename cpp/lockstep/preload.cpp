@@ -48,7 +48,7 @@ Function* find_next(Function*, const char* name) {
 
 bool is_in_lockstep() { return simulator >= 0; }
 
-/// Tells the simulator an event; without a simulator, the program ends.
+/// Sends an event to the simulator; without a simulator, the program ends.
 void tell(char event) {
   if (send(simulator, &event, 1, MSG_NOSIGNAL) != 1) _exit(0);
 }

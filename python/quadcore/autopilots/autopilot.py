@@ -136,6 +136,11 @@ class Autopilot:
         """
         raise InputError("This autopilot answers no questions. Check it in a flight.")
 
+    @property
+    def pilot_every(self) -> int:
+        """Ticks from one call of `pilot` to the next, from the first reset on."""
+        return max(1, round(1 / (self.pilot_rate * self.period)))
+
     def close(self) -> None:
         """End the program, and remove its files; called after every flight."""
 
@@ -147,8 +152,7 @@ class Autopilot:
         self._sensors = Sensors(simulation, self.imu)
         held = self._sensors.read(simulation.time)
         self._sensors = Sensors(simulation, self.imu)
-        every = max(1, round(1 / (self.pilot_rate * self.period)))
-        self._pilot_every, self._ticks = every, 0
+        self._ticks = 0
         held_ticks = 0 if self.session is not None else round(self.hold / self.period)
         for k in range(held_ticks, 0, -1):
             t = -k * self.period
@@ -169,7 +173,7 @@ class Autopilot:
         )
         check_reaction(by_command, simulation.model.name)
         self.channels = map_channels(self.layout, by_command, self.rotors)
-        self.period = max(1 / self.rate, simulation.dt)
+        self.period = max(1 / self.rate, float(simulation.dt))
         driven = [channel.rotor for channel in self.channels]
         self.curve = MotorCurve(self.motor_curve, np.array([rotor.max_speed for rotor in driven]))
         self._order = np.array([rotor.command_index for rotor in driven])
@@ -184,7 +188,7 @@ class Autopilot:
         return speeds
 
     def _ask(self, readings: Readings, state: Any, reference: Any) -> np.ndarray:
-        if self._ticks % self._pilot_every == 0:
+        if self._ticks % self.pilot_every == 0:
             self._sticks_held = self.pilot(readings.time, state, reference)
         self._ticks += 1
         outputs = np.asarray(self.tick(readings, self._sticks_held), dtype=float)
@@ -200,10 +204,3 @@ class Autopilot:
         error = FlightError(f"the flight failed {when}: {reason}")
         error.time = max(t, 0.0)
         return error
-
-
-def check_hold(where: str, hold: float) -> float:
-    """Return the duration of the phase before the flight; raises `InputError` if it is wrong."""
-    if 0 <= hold <= 600:
-        return hold
-    raise InputError(f"{where}hold is {hold:g}. Give seconds, from 0 to 600.")

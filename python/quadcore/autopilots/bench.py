@@ -45,7 +45,6 @@ class Bench:
         self._orientation = _LEVEL
         self.sticks = self._sent = Sticks()
         self._ticks = 0
-        self._radio_every = max(1, round(1 / (autopilot.pilot_rate * autopilot.period)))
         self.outputs = np.zeros(len(autopilot.channels))
 
     @property
@@ -92,7 +91,8 @@ class Bench:
             np.asarray(angular_velocity),
             self._gravity * up,
         )
-        if self._ticks % self._radio_every == 0:  # a radio that falls silent disarms an autopilot
+        # A radio that falls silent disarms an autopilot.
+        if self._ticks % self._autopilot.pilot_every == 0:
             self._sent = Sticks(*self.sticks)
         self._ticks += 1
         self.outputs = np.asarray(self._autopilot.tick(readings, self._sent), dtype=float)
