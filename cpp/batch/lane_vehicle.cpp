@@ -105,9 +105,9 @@ std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
   const std::size_t rotors = model.joints.size();
   const bool like_gazebo = simulation.engine_name() == "gazebo11";
   if (!(like_gazebo || simulation.engine_name() == "eigen") || !told.all_quiet ||
-      !simulation.world().obstacles.empty() || rotors > most_rotors ||
-      told.rotor_forces.size() > 1 || told.frame_drags.size() > 1 || told.airframes.size() > 1 ||
-      told.motor_torques.size() != 1) {
+      !simulation.world().obstacles.empty() || !simulation.world().free_bodies.empty() ||
+      rotors > most_rotors || told.rotor_forces.size() > 1 || told.frame_drags.size() > 1 ||
+      told.airframes.size() > 1 || told.motor_torques.size() != 1) {
     return std::nullopt;
   }
   LaneVehicle vehicle{{}, unbounded, false, -unbounded, {}, {}, {}};

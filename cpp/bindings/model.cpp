@@ -232,13 +232,15 @@ void bind_vehicle(py::module_& m) {
 
 const char* kind_name(const Obstacle& obstacle) {
   switch (obstacle.kind) {
-    case ObstacleKind::box:
+    case ShapeKind::box:
       return "box";
-    case ObstacleKind::cylinder:
+    case ShapeKind::cylinder:
       return "cylinder";
-    case ObstacleKind::sphere:
+    case ShapeKind::sphere:
       return "sphere";
-    case ObstacleKind::plane:
+    case ShapeKind::mesh:
+      return "mesh";
+    case ShapeKind::plane:
       break;
   }
   return "plane";
@@ -248,10 +250,12 @@ void bind_obstacle(py::module_& m) {
   py::class_<Obstacle>(m, "Obstacle", "Collision shape of a world that stands still.")
       .def_readonly("model", &Obstacle::model, "Name of its model.")
       .def_readonly("name", &Obstacle::name, "LINK::COLLISION.")
-      .def_property_readonly("kind", &kind_name, "box, cylinder, sphere or plane.")
+      .def_property_readonly("kind", &kind_name, "box, cylinder, sphere, plane or mesh.")
       .def_property_readonly(
           "size", [](const Obstacle& o) -> Vector3d { return o.size; },
-          "Box x, y, z; cylinder radius, length; sphere radius, m; plane: normal; shape (3,).")
+          "Box x, y, z; cylinder radius, length; sphere radius; extent of a mesh, m; plane: "
+          "normal; "
+          "shape (3,).")
       .def_property_readonly(
           "position", [](const Obstacle& o) -> Vector3d { return o.position_W; },
           "Position in the world, m; shape (3,). Only z of a plane has an effect.")
@@ -261,7 +265,58 @@ void bind_obstacle(py::module_& m) {
           "Orientation in the world, x, y, z, w; shape (4,).")
       .def_readonly("where", &Obstacle::where, "FILE:LINE.")
       .def("distance_to", &distance_to, py::arg("point"),
-           "Return the signed distance of a point (3,) from the surface, negative inside, m.");
+           "Return the signed distance of a point (3,) from the surface, negative inside, m. That "
+           "of a mesh has no sign.")
+      .def_property_readonly(
+          "vertices",
+          [](const Obstacle& o) {
+            Eigen::Matrix<double, Eigen::Dynamic, 3> vertices(o.mesh ? o.mesh->vertices.size() : 0,
+                                                              3);
+            for (Eigen::Index i = 0; i < vertices.rows(); ++i) {
+              vertices.row(i) = o.mesh->vertices[static_cast<std::size_t>(i)].cast<double>();
+            }
+            return vertices;
+          },
+          "Vertices of a mesh in its axes, m; shape (n, 3).")
+      .def_property_readonly(
+          "triangles",
+          [](const Obstacle& o) {
+            Eigen::Matrix<std::uint32_t, Eigen::Dynamic, 3> triangles(
+                o.mesh ? o.mesh->triangles.size() : 0, 3);
+            for (Eigen::Index i = 0; i < triangles.rows(); ++i) {
+              const auto& triangle = o.mesh->triangles[static_cast<std::size_t>(i)];
+              triangles.row(i) << triangle[0], triangle[1], triangle[2];
+            }
+            return triangles;
+          },
+          "Vertices of each triangle of a mesh, indices; shape (n, 3).");
+}
+
+void bind_free_bodies(py::module_& m) {
+  py::class_<FreeBody>(m, "FreeBody", "Link of a world's model that is not static.")
+      .def_readonly("model", &FreeBody::model, "Name of its model.")
+      .def_readonly("name", &FreeBody::name, "Name of the link.")
+      .def_property_readonly(
+          "mass", [](const FreeBody& b) { return b.inertial.mass; }, "Mass, kg.")
+      .def_readonly("shapes", &FreeBody::shapes,
+                    "Its collision shapes at the start, list of Obstacle.")
+      .def_readonly("where", &FreeBody::where, "FILE:LINE.");
+  py::class_<FreeBodyState>(m, "FreeBodyState", "Motion of a free body.")
+      .def_readonly("name", &FreeBodyState::name, "MODEL::LINK.")
+      .def_property_readonly(
+          "position", [](const FreeBodyState& s) -> Vector3d { return s.position_W; },
+          "Position of the link in the world, m; shape (3,).")
+      .def_property_readonly(
+          "orientation",
+          [](const FreeBodyState& s) -> Eigen::Vector4d { return s.orientation_W.coeffs(); },
+          "Orientation in the world, x, y, z, w; shape (4,).")
+      .def_property_readonly(
+          "linear_velocity", [](const FreeBodyState& s) -> Vector3d { return s.linear_velocity_W; },
+          "Velocity of the link's origin in world axes, m/s; shape (3,).")
+      .def_property_readonly(
+          "angular_velocity",
+          [](const FreeBodyState& s) -> Vector3d { return s.angular_velocity_W; },
+          "Angular velocity in world axes, rad/s; shape (3,).");
 }
 
 void bind_world(py::module_& m) {
@@ -281,6 +336,8 @@ void bind_world(py::module_& m) {
                              "Whether there is a ground plane at z = 0.")
       .def_property_readonly("obstacles", get(&World::obstacles),
                              "Obstacles other than that ground plane, a list of Obstacle.")
+      .def_property_readonly("free_bodies", get(&World::free_bodies),
+                             "Links of models that are not static, a list of FreeBody.")
       .def_property_readonly("start_time", get(&World::start_time),
                              "Time at which a saved world starts (s).")
       .def_property_readonly("ignored_models", get(&World::ignored_models),
@@ -335,6 +392,7 @@ void bind_model(py::module_& m) {
   bind_bodies(m);
   bind_vehicle(m);
   bind_obstacle(m);
+  bind_free_bodies(m);
   bind_world(m);
   bind_readers(m);
 }

@@ -181,6 +181,9 @@ Snapshot
           "engine", [](const Self& self) { return self->engine_name(); }, "Name of the engine.")
       .def_property_readonly("method", locked([](const Simulation& s) { return s.method(); }),
                              "Integration method of the engine, in one line.")
+      .def_property_readonly("free_bodies",
+                             locked([](const Simulation& s) { return s.free_bodies(); }),
+                             "Present motion of the world's free bodies, list of FreeBodyState.")
       .def_property_readonly(
           "model", locked([](const Simulation& s) { return s.model(); }),
           "Model as the engine simulates it, including bodies that are attached now.")

@@ -21,7 +21,7 @@ Collision collision_of(ShapeKind kind, const Vector3d& size, const Vector3d& at 
   return shape;
 }
 
-World world_of(ObstacleKind kind, const Vector3d& size, const Vector3d& position,
+World world_of(ShapeKind kind, const Vector3d& size, const Vector3d& position,
                const Quaterniond& orientation = Quaterniond::Identity()) {
   World world;
   Obstacle obstacle;
@@ -42,23 +42,23 @@ TEST_CASE("distances of simple shapes are known") {
   const Model ball = vehicle_of(collision_of(ShapeKind::sphere, {0.5, 0, 0}));
   const Model box = vehicle_of(collision_of(ShapeKind::box, {1, 2, 3}));
   const Model disc = vehicle_of(collision_of(ShapeKind::cylinder, {1, 0.2, 0}));
-  const World pole = world_of(ObstacleKind::cylinder, {0.1, 12, 0}, {3, 0, 0});
+  const World pole = world_of(ShapeKind::cylinder, {0.1, 12, 0}, {3, 0, 0});
   const auto near = [](double value) { return doctest::Approx(value).epsilon(1e-6); };
   CHECK(distance(ball, pole) == near(2.4));
   CHECK(distance(box, pole) == near(2.4));
   CHECK(distance(disc, pole) == near(1.9));
   CHECK(distance(ball, pole, {3, 0, 7}) == near(0.5));  // above the pole
-  CHECK(distance(ball, world_of(ObstacleKind::sphere, {1, 0, 0}, {0, 3, 4})) == near(3.5));
+  CHECK(distance(ball, world_of(ShapeKind::sphere, {1, 0, 0}, {0, 3, 4})) == near(3.5));
 
   // Corner against corner, and edge against crossed edge.
-  CHECK(distance(box, world_of(ObstacleKind::box, {1, 1, 1}, {2, 3, 4})) ==
+  CHECK(distance(box, world_of(ShapeKind::box, {1, 1, 1}, {2, 3, 4})) ==
         near(Vector3d(1, 1.5, 2).norm()));
   const Quaterniond eighth = quaternion_about(Vector3d::UnitX(), 0.7853981633974483);
-  CHECK(distance(box, world_of(ObstacleKind::box, {1, 1, 1}, {0, 0, 5}, eighth)) ==
+  CHECK(distance(box, world_of(ShapeKind::box, {1, 1, 1}, {0, 0, 5}, eighth)) ==
         near(5 - 1.5 - std::sqrt(0.5)));
 
   // n . x = z / |n|, whatever x and y of the pose.
-  const World wall = world_of(ObstacleKind::plane, {2, 0, 0}, {9, 9, -4});
+  const World wall = world_of(ShapeKind::plane, {2, 0, 0}, {9, 9, -4});
   CHECK(distance(ball, wall) == near(1.5));
   CHECK(distance(box, wall, {0, 0, 0}, quaternion_about(Vector3d::UnitZ(), 1.5707963267948966)) ==
         near(1));
@@ -66,9 +66,9 @@ TEST_CASE("distances of simple shapes are known") {
 
 TEST_CASE("shapes that overlap touch") {
   const Model box = vehicle_of(collision_of(ShapeKind::box, {1, 1, 1}));
-  CHECK(distance(box, world_of(ObstacleKind::sphere, {1, 0, 0}, {1, 0, 0})) < 1e-6);
-  CHECK(distance(box, world_of(ObstacleKind::cylinder, {0.1, 9, 0}, {0.55, 0.3, 0})) < 1e-6);
-  CHECK(distance(box, world_of(ObstacleKind::plane, {0, 0, 1}, {0, 0, 0.2})) == 0);
+  CHECK(distance(box, world_of(ShapeKind::sphere, {1, 0, 0}, {1, 0, 0})) < 1e-6);
+  CHECK(distance(box, world_of(ShapeKind::cylinder, {0.1, 9, 0}, {0.55, 0.3, 0})) < 1e-6);
+  CHECK(distance(box, world_of(ShapeKind::plane, {0, 0, 1}, {0, 0, 0.2})) == 0);
 }
 
 TEST_CASE("a shape on a rotor counts as what it sweeps, and the nearest obstacle is named") {
@@ -78,9 +78,9 @@ TEST_CASE("a shape on a rotor counts as what it sweeps, and the nearest obstacle
   model.joints[0].pose.xyz = {1, 0, 0};
   model.joints[0].axis = Vector3d::UnitZ();
   model.links[1].collisions = {collision_of(ShapeKind::box, {0.4, 0.02, 0.01})};  // a blade
-  World world = world_of(ObstacleKind::sphere, {0.5, 0, 0}, {-9, 0, 0});
+  World world = world_of(ShapeKind::sphere, {0.5, 0, 0}, {-9, 0, 0});
   const double reach = std::hypot(0.2, 0.01);
-  world.obstacles.push_back(world_of(ObstacleKind::cylinder, {0.1, 4, 0}, {1, 2, 0}).obstacles[0]);
+  world.obstacles.push_back(world_of(ShapeKind::cylinder, {0.1, 4, 0}, {1, 2, 0}).obstacles[0]);
   const Clearance::Nearest nearest =
       Clearance(model, world).find({0, 0, 0}, Quaterniond::Identity());
   CHECK(nearest.distance == doctest::Approx(1.9 - reach));
@@ -98,7 +98,7 @@ TEST_CASE("the distance of random shapes agrees with that of sampled points") {
     const Vector3d size = vector().cwiseAbs() + Vector3d::Constant(0.2);
     const Quaterniond q = quaternion_from_rpy(3 * vector());
     const Model box = vehicle_of(collision_of(ShapeKind::box, size));
-    const World world = world_of(i % 2 ? ObstacleKind::box : ObstacleKind::cylinder,
+    const World world = world_of(i % 2 ? ShapeKind::box : ShapeKind::cylinder,
                                  vector().cwiseAbs() + Vector3d::Constant(0.2), 3 * vector(),
                                  quaternion_from_rpy(vector()));
     const double found = distance(box, world, {0, 0, 0}, q);
@@ -124,7 +124,7 @@ TEST_CASE("the distance of random shapes agrees with that of sampled points") {
 TEST_CASE("an edge that touches a nearly parallel face is found") {
   const Vector3d half(0.25, 0.25, 0.05);
   const Model box = vehicle_of(collision_of(ShapeKind::box, 2 * half));
-  const World slab = world_of(ObstacleKind::box, {1, 1, 0.2}, {0, 0, 0});
+  const World slab = world_of(ShapeKind::box, {1, 1, 0.2}, {0, 0, 0});
   for (const double tilt : {1e-3, 5e-3, 0.01, 0.03, 0.05}) {
     const double drop = half.x() * std::sin(tilt) + half.z() * std::cos(tilt);
     const Quaterniond q(Eigen::AngleAxisd(tilt, Vector3d::UnitY()));

@@ -191,12 +191,14 @@ TEST_CASE("a nested model collides, and stands still with its parent") {
                                .models;
   CHECK(read.obstacles.at(0).model == "outer::inner");
   check_near(read.obstacles[0].position_W, {1, 2, 0});
-  const std::string moves = refusal_inside(
-      "<model name='outer'><static>1</static><model name='inner'><static>0</static><link "
-      "name='l'>" +
-      collision("<sphere/>") + "</link></model></model>");
-  CHECK(has(moves, "a.world:2: the model 'outer::inner' is not static"));
-  CHECK(has(moves, "--ignore outer"));
+  const WorldModels moves =
+      read_inside(
+          "<model name='outer'><static>1</static><model name='inner'><static>0</static><link "
+          "name='l'>" +
+          collision("<sphere/>") + "</link></model></model>")
+          .models;
+  CHECK(moves.obstacles.empty());
+  CHECK(moves.free_bodies.at(0).model == "outer::inner");
 }
 
 TEST_CASE("frames are resolved from SDF 1.7 on, and ignored before") {
@@ -234,10 +236,49 @@ TEST_CASE("models that nothing feels are accepted, others name the remedy") {
 
   const std::string free =
       "\n<model name='crate'><link name='l'>" + collision("<box/>") + "</link></model>";
-  CHECK(refusal_inside(free) ==
-        "a.world:3: the model 'crate' is not static, but free bodies are not supported. Write "
-        "<static>true</static> if it stands still. To simulate without it, use --ignore crate.");
+  const FreeBody body = read_inside(free).models.free_bodies.at(0);
+  CHECK(body.inertial.mass == 1);
+  CHECK(body.inertial.inertia == Matrix3d::Identity());
+  CHECK(body.shapes.at(0).name == "l::c");
   CHECK(read_inside(free, "1.6", {"crate"}).models.ignored == std::vector<std::string>{"crate"});
+}
+
+TEST_CASE("a joint of free bodies has its anchor and axis in both links") {
+  const std::string inside =
+      "<model name='m'><pose>1 0 0 0 0 0</pose>"
+      "<link name='a'>" +
+      collision("<box/>") + "</link><link name='b'><pose>0 0 2 0 0 1.5707963267948966</pose>" +
+      collision("<box/>") +
+      "</link><joint name='j' type='revolute'><parent>a</parent><child>b</child>"
+      "<pose>0 0 -1 0 0 0</pose><axis><xyz>1 0 0</xyz>";
+  const std::string end = "</axis></joint></model>";
+  const FreeJoint joint = read_inside(inside + end).models.free_joints.at(0);
+  CHECK(joint.name == "m::j");
+  check_near(joint.anchor_C, {0, 0, -1});
+  check_near(joint.anchor_P, {0, 0, 1});
+  check_near(joint.axis_C, {1, 0, 0});
+  check_near(joint.axis_P, {0, 1, 0});
+  // In the model's axes.
+  const std::string in_model = inside + "<use_parent_model_frame>1</use_parent_model_frame>" + end;
+  check_near(read_inside(in_model).models.free_joints.at(0).axis_P, {1, 0, 0});
+  check_near(read_inside(inside + end, "1.4").models.free_joints.at(0).axis_P, {1, 0, 0});
+}
+
+TEST_CASE("files of SDF 1.0 are converted") {
+  const World world = read_world(
+      {"a.world",
+       "<gazebo version='1.0'><world name='w'><physics type='ode' update_rate='500'>"
+       "<gravity xyz='0 0 -3'/><ode><solver dt='0.002' iters='20' sor='1.2'/></ode></physics>"
+       "<model name='m' static='true'><origin pose='1 2 3 0 0 0'/><link name='l'>"
+       "<collision name='c'><origin pose='0 0 1 0 0 0'/><geometry><box size='1 2 3'/></geometry>"
+       "</collision></link></model></world></gazebo>"},
+      {});
+  CHECK(world.gravity_W == Vector3d(0, 0, -3));
+  CHECK(world.max_step_size == 0.002);
+  CHECK(world.solver_iterations == 20);
+  CHECK(world.real_time_update_rate == 500);
+  check_near(world.obstacles.at(0).position_W, {1, 2, 4});
+  CHECK(world.obstacles[0].size == Vector3d(1, 2, 3));
 }
 
 TEST_CASE("a bad number in a model is one line with its place") {

@@ -337,14 +337,10 @@ WORLDS = {
             "to GAZEBO_MODEL_PATH",
         ),
         fault(END, END + PLANE.replace("0 0 1", "0 0 0"), "<normal> is zero", "Write a direction"),
-        fault(END, END + PLANE.replace("plane", "sphere").replace("true", "false"), "not static"),
         fault(
-            END,
-            END + PLANE.replace("<static>true</static>", "").replace("plane", "sphere"),
-            "not static",
-            "<static>true</static>",
+            END, END + PLANE.replace("plane", "heightmap"), "the shape <heightmap>", "Use box, sph"
         ),
-        fault(END, END + PLANE.replace("plane", "mesh"), "the shape <mesh>", "Use box, sphere"),
+        fault(END, END + PLANE.replace("plane", "mesh"), "the mesh '' is not found", "Add the"),
     ],
     "XML that is malformed or dangerous": [
         fault("</physics>", "</physic>", "malformed XML", "mismatched tag"),
@@ -411,7 +407,7 @@ def test_whatever_is_cut_or_doubled_is_flown_or_refused_with_its_place(toy, data
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("<gazebo/>", "toy.world:1: the outermost element is <gazebo>. Use <sdf>."),
+        ("<launch/>", "toy.world:1: the outermost element is <launch>. Use <sdf>."),
         ("<sdf/>", "toy.world:1: <sdf> requires a <world>. Add one"),
         ("", "toy.world:1: "),
     ],

@@ -1,4 +1,4 @@
-"""Contact with static obstacles in the engine gazebo11 against real Gazebo 11.
+"""Contact with obstacles and free bodies in the engine gazebo11 against real Gazebo 11.
 
 tests/data/gazebo11/obstacles contains a part of the recordings, with a summary. Each case was also
 recorded with a start that differs by 1e-12 m/s and 1e-12 rad/s. Its growth decides until when a
@@ -27,7 +27,7 @@ def read_summaries():
             continue
         with summary.open(newline="") as rows:
             for row in csv.DictReader(rows):
-                if row["class"].startswith("S_"):
+                if not row["class"].startswith("V_"):
                     yield summary.parent / row["case"], row
 
 

@@ -42,7 +42,7 @@ CompliantGround::CompliantGround(const Model& model, const Gyrostat& body, const
       shape.link = i;
       shape.collision = &collision;
       shape.R_LS = collision.pose.rotation().toRotationMatrix();
-      shape.reach = quadcore::reach(collision);
+      shape.reach = outer_radius(collision.kind, collision.size);
       shape.turns = i > 0 && !revolves(model, i, collision);
       shape.stable = stable[shapes_.size()];
       shape.hardest = joint_stiffness(collision.surface, ground);

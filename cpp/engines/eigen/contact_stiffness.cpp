@@ -43,7 +43,7 @@ Shape measured(const Model& model, std::size_t link, const Collision& collision,
   if (collision.kind == ShapeKind::sphere) {
     shape.springs = spring_on_ball(p_CS, collision.size.x());
   } else if (link > 0 && !revolves(model, link, collision)) {
-    const double swept = collision.pose.xyz.norm() + reach(collision);
+    const double swept = collision.pose.xyz.norm() + outer_radius(collision.kind, collision.size);
     shape.springs = shape.points * spring_on_ball(X_FL.translation() - p_FC, swept);
   } else {
     for (int i = 0; i < shape.points; ++i) shape.springs += spring_at(points[i]);
@@ -54,7 +54,8 @@ Shape measured(const Model& model, std::size_t link, const Collision& collision,
 /// Return the maximum lever about the joint's axis [m].
 double lever(const Model& model, const Shape& shape) {
   const Vector3d& axis = model.joints[shape.link - 1].axis;
-  return axis.cross(shape.collision->pose.xyz).norm() + reach(*shape.collision);
+  return axis.cross(shape.collision->pose.xyz).norm() +
+         outer_radius(shape.collision->kind, shape.collision->size);
 }
 
 }  // namespace

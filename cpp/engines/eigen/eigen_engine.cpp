@@ -29,12 +29,14 @@ void refuse_tags(const Model& model) {
   }
 }
 
-/// Reject obstacles, of which this engine models only the ground plane.
+/// Reject obstacles and free bodies, of which this engine models only the ground plane.
 void refuse_obstacles(const World& world) {
-  if (world.obstacles.empty()) return;
-  const Obstacle& first = world.obstacles.front();
-  throw InputError(first.where + ": the engine eigen does not model the obstacle '" + first.model +
-                   "'. Use the engine ode or gazebo11.");
+  const auto refuse = [](const auto& first, const char* kind) {
+    throw InputError(first.where + ": the engine eigen does not model the " + kind + " '" +
+                     first.model + "'. Use the engine ode or gazebo11.");
+  };
+  if (!world.obstacles.empty()) refuse(world.obstacles.front(), "obstacle");
+  if (!world.free_bodies.empty()) refuse(world.free_bodies.front(), "free body");
 }
 
 /// Number of substeps at the ground, where impacts are faster than all other motion.

@@ -42,24 +42,9 @@ int touching_points(const Collision& shape, const Vector3d& p_WS, const Matrix3d
     case ShapeKind::sphere:
       points_W[0] = p_WS - shape.size.x() * Vector3d::UnitZ();
       return 1;
-    case ShapeKind::mesh:
-      break;
+    default:
+      return 0;
   }
-  return 0;
-}
-
-double reach(const Collision& shape) {
-  switch (shape.kind) {
-    case ShapeKind::box:
-      return shape.size.norm() / 2;
-    case ShapeKind::cylinder:
-      return Vector3d(shape.size.x(), shape.size.y() / 2, 0).norm();
-    case ShapeKind::sphere:
-      return shape.size.x();
-    case ShapeKind::mesh:
-      break;
-  }
-  return 0;
 }
 
 }  // namespace quadcore

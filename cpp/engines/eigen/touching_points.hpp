@@ -16,7 +16,4 @@ constexpr int most_touching_points = 8;
 int touching_points(const Collision& shape, const Vector3d& p_WS, const Matrix3d& R_WS,
                     Vector3d (&points_W)[most_touching_points]);
 
-/// Return the distance of a shape's farthest point from its centre [m].
-double reach(const Collision& shape);
-
 }  // namespace quadcore

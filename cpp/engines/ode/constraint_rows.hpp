@@ -8,15 +8,23 @@
 
 namespace quadcore {
 
-/// A hinge between two bodies; vectors in the axes of the body they belong to.
+/// Kind of a hinge; see Hinge for its axes.
+enum class HingeKind { revolute, prismatic, universal, ball };
+
+/// A hinge between two bodies, or a body and the world; vectors in the axes of the body they belong
+/// to. The two axes coincide, but those of a universal joint are perpendicular.
 struct Hinge {
-  std::size_t child, parent;                           ///< indices of the bodies
+  static constexpr std::size_t world = static_cast<std::size_t>(-1);
+
+  std::size_t child, parent;                           ///< indices of the bodies, or `world`
   Vector3d anchor_C, anchor_P;                         ///< from each body's centre of mass [m]
   Vector3d axis_C, axis_P;                             ///< unit
   double friction = 0;                                 ///< dry, about the axis [N m]
   double implicit_damping = 0;                         ///< about the axis [N m s/rad]
   bool locked = false;                                 ///< held at angle zero
   Quaterniond q_PC_at_zero = Quaterniond::Identity();  ///< orientation of the child at angle zero
+  HingeKind kind = HingeKind::revolute;
+  double lower = -1e16, upper = 1e16;  ///< limits of the position [rad, m]
 };
 
 /// Present geometry of a hinge; vectors in W.
@@ -36,9 +44,11 @@ struct SurfacePair {
   double mu1, mu2;            ///< friction along the first direction and across it
   double max_correction;      ///< limit of the correction in the solution for velocities [m/s]
   double slip1, slip2;        ///< softness of the friction along and across [m/(N s)]
+  double bounce = 0;          ///< coefficient of restitution
+  double bounce_speed = 0;    ///< slower impacts do not bounce [m/s]
 };
 
-/// A point where a body touches something that stands still.
+/// A point where a body touches something that stands still or another body.
 struct Contact {
   std::size_t body;
   Vector3d position_W;  ///< m
@@ -46,6 +56,13 @@ struct Contact {
   Vector3d fdir1_W;     ///< first direction of friction, any length; zero: ODE's choice
   double depth;         ///< depth of the penetration to correct [m]
   SurfacePair surface;
+  int other = -1;  ///< the other body, or -1
+};
+
+/// A range of bodies.
+struct BodyRange {
+  std::size_t begin, end;
+  bool contains(std::size_t body) const { return body >= begin && body < end; }
 };
 
 /// One row J v = correction of the constraints between up to two bodies, in ODE's terms.
@@ -79,7 +96,7 @@ class ConstraintRows {
                                   ///< [m/s, rad/s]
   };
 
-  /// hinges[i] carries bodies[i + 1]; `order` contains the indices of the bodies, the oldest first.
+  /// Each hinge carries its child; `order` contains the indices of the bodies, the oldest first.
   ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
                  const std::vector<std::size_t>& order, const Options& options);
 
@@ -87,20 +104,28 @@ class ConstraintRows {
   void reserve(std::size_t contacts);
   std::size_t most_rows() const { return rows_.capacity(); }
 
-  const std::vector<ConstraintRow>& build(const std::vector<Contact>& contacts, double dt);
+  /// Return the rows of the islands of some bodies. Bodies outside the range are in no island.
+  /// \param asleep  whether each body sleeps: it starts no island, but another one may wake it
+  const std::vector<ConstraintRow>& build(const std::vector<Contact>& contacts, double dt,
+                                          const BodyRange& range, std::vector<char>& asleep);
   const std::vector<Hinge>& hinges() const { return hinges_; }
 
  private:
-  void visit(std::size_t body, const std::vector<Contact>& contacts, double dt);
+  void visit(std::size_t body, const std::vector<Contact>& contacts, double dt,
+             std::vector<char>& asleep);
+  void reach(std::size_t body, std::vector<char>& asleep);
   void add_hinge(std::size_t index, double dt);
+  void add_along(const Hinge& hinge, double position, double dt, ConstraintRow row);
+  double speed_along(const ConstraintRow& row) const;
   void add_contact(const Contact& contact, double dt);
 
   const std::vector<dBodyID>& bodies_;
   std::vector<Hinge> hinges_;
-  std::vector<std::size_t> newest_first_;  ///< indices of the bodies
+  std::vector<std::size_t> newest_first_;         ///< indices of the bodies
+  std::vector<std::size_t> newest_hinges_first_;  ///< indices of the hinges
   Options options_;
   std::vector<ConstraintRow> rows_;
-  std::vector<char> body_tagged_, hinge_tagged_;
+  std::vector<char> body_tagged_, hinge_tagged_, contact_tagged_;
   std::vector<std::size_t> stack_;
 };
 

@@ -25,18 +25,24 @@ bool is_capped(const ConstraintRow& row) { return std::abs(row.correction) > row
 }  // namespace
 
 GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
-                       const std::vector<std::size_t>& order, const Options& options)
+                       const std::vector<std::size_t>& order, const Options& options,
+                       std::size_t vehicle)
     : warm_start(hinges.size()),
+      asleep(bodies.size()),
       ode_bodies_(bodies),
       constraints_(bodies, std::move(hinges), order, options.rows),
       options_(options),
-      bodies_(bodies.size()) {
+      bodies_(bodies.size()),
+      vehicle_(vehicle) {
   sweeps_.bodies.resize(bodies.size());
   sweeps_.smoothing = Sweeps::Two{0, contact_smoothing};
-  simple_hinges_ = options.rows.cfm == 0;
-  for (const Hinge& hinge : constraints_.hinges()) {
-    simple_hinges_ &= hinge.friction == 0 && hinge.implicit_damping == 0;
-  }
+  const std::vector<Hinge>& all = constraints_.hinges();
+  const auto is_simple = [&](const Hinge& hinge) {
+    return options.rows.cfm == 0 && hinge.friction == 0 && hinge.implicit_damping == 0;
+  };
+  const std::size_t of_vehicle = vehicle - 1;  // all but the frame hang on one
+  const auto last = all.begin() + static_cast<std::ptrdiff_t>(of_vehicle);
+  if (std::all_of(all.begin(), last, is_simple)) simple_hinges_ = of_vehicle;
   reserve(0);
 }
 
@@ -50,9 +56,9 @@ void GazeboStep::reserve(std::size_t contacts) {
   prepared_.reserve(constraints_.most_rows());
 }
 
-void GazeboStep::step(const std::vector<Contact>& contacts, double dt) {
-  read_bodies();
-  rows_ = &constraints_.build(contacts, dt);
+void GazeboStep::step(const std::vector<Contact>& contacts, double dt, const BodyRange& range) {
+  rows_ = &constraints_.build(contacts, dt, range, asleep);
+  read_bodies(range);
   prepare_rows();
   begin(dt);
   sweeps_.sweep(options_.iterations);
@@ -65,17 +71,17 @@ void GazeboStep::step(const std::vector<Contact>& contacts, double dt) {
     start.pose[k] = solved_[i]->multiplier[pose];
     start.velocity[k] = solved_[i]->multiplier[velocity];
   }
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
     Body& b = bodies_[i];
     b.moving = b.velocity + dt * (b.free_acceleration + constraint(i, pose));
     b.velocity += dt * (b.free_acceleration + constraint(i, velocity));
   }
-  damp();
-  move(dt);
+  damp(range);
+  move(dt, range);
 }
 
-void GazeboStep::read_bodies() {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+void GazeboStep::read_bodies(const BodyRange& range) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
     const dBodyID ode = ode_bodies_[i];
     Body& body = bodies_[i];
     dMass mass;
@@ -114,7 +120,7 @@ void GazeboStep::prepare_rows() {
       diagonal += row.J[side].dot(prepared.inverse_mass_J[side]);
     }
     prepared.relaxation = options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
-    if (simple_hinges_ && row.hinge >= 0) {
+    if (row.hinge >= 0 && static_cast<std::size_t>(row.hinge) < simple_hinges_) {
       put_hinge(i);
     } else {
       put_row(i);
@@ -196,7 +202,7 @@ void GazeboStep::add_multiplier(std::size_t index, const Sweeps::Two& multiplier
 }
 
 bool GazeboStep::caps_hinges(double dt) {
-  const std::vector<ConstraintRow>& rows = constraints_.build({}, dt);
+  const std::vector<ConstraintRow>& rows = constraints_.build({}, dt, vehicle(), asleep);
   return std::any_of(rows.begin(), rows.end(), is_capped);
 }
 
@@ -234,8 +240,8 @@ GazeboStep::Vector6 GazeboStep::constraint(std::size_t body, int solve) const {
 
 double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
   static const std::vector<Contact> none;
-  read_bodies();
-  rows_ = &constraints_.build(none, dt);
+  read_bodies(vehicle());
+  rows_ = &constraints_.build(none, dt, vehicle(), asleep);
   prepare_rows();
   for (Sweeps::Acceleration& body : sweeps_.bodies) body.fill(Sweeps::Two{});
   double count = 0;
@@ -270,21 +276,25 @@ double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
 
 /// Gazebo damps the velocity that moves a pose, including the correction of a penetration, and
 /// subtracts the difference from the velocity.
-void GazeboStep::damp() {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const double factor = options_.damping_factors[i];
-    if (factor == 0) continue;
+void GazeboStep::damp(const BodyRange& range) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const Damping& damping = options_.damping[i];
+    if (damping.linear == 0 && damping.angular == 0) continue;
     Body& b = bodies_[i];
     Vector6 damped;
-    damped << part_left_by_damping(b.moving.head<3>(), factor) * b.moving.head<3>(),
-        part_left_by_damping(b.moving.tail<3>(), factor) * b.moving.tail<3>();
+    damped << part_left_by_damping(b.moving.head<3>(), damping.linear) * b.moving.head<3>(),
+        part_left_by_damping(b.moving.tail<3>(), damping.angular) * b.moving.tail<3>();
     b.velocity = damped + (b.velocity - b.moving);
   }
 }
 
-void GazeboStep::move(double dt) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+void GazeboStep::move(double dt, const BodyRange& range) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
     const dBodyID ode = ode_bodies_[i];
+    if (asleep[i]) {
+      forget_forces(ode);
+      continue;
+    }
     const Body& body = bodies_[i];
     move_pose(ode, body.moving.head<3>(), body.moving.tail<3>(), dt);
     restore_velocity(ode, body.velocity.data());

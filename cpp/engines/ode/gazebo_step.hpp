@@ -19,12 +19,16 @@ namespace quadcore {
 /// shares. The result agrees with Gazebo's recording of take-off and landing within 1e-12 m.
 class GazeboStep {
  public:
+  /// Fractions of its velocities that a body loses in each step.
+  struct Damping {
+    double linear, angular;
+  };
   struct Options {
     int iterations;
     double sor;
     Vector3d gravity_W;
     ConstraintRows::Options rows;
-    std::vector<double> damping_factors;  ///< damping factor of each body
+    std::vector<Damping> damping;  ///< of each body
   };
 
   /// Multipliers of a hinge's rows: force, and torque across the axis.
@@ -35,14 +39,17 @@ class GazeboStep {
   };
 
   /// Bodies, hinges and their order as in ConstraintRows.
+  /// \param vehicle  number of bodies of the vehicle, which are the first; its hinges are the first
   GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
-             const std::vector<std::size_t>& order, const Options& options);
+             const std::vector<std::size_t>& order, const Options& options, std::size_t vehicle);
 
   /// Reserve memory for so many contacts, so that step() does not allocate.
   void reserve(std::size_t contacts);
 
-  /// Advance the bodies by dt under the added forces.
-  void step(const std::vector<Contact>& contacts, double dt);
+  /// Advance all bodies by dt under the added forces.
+  void step(const std::vector<Contact>& contacts, double dt) { step(contacts, dt, all()); }
+  /// Advance all but the vehicle's bodies. Contacts of the vehicle must not be among the contacts.
+  void step_free(const std::vector<Contact>& contacts, double dt) { step(contacts, dt, free()); }
 
   /// Return whether a hinge's correction in the present poses exceeds its limit.
   bool caps_hinges(double dt);
@@ -53,6 +60,7 @@ class GazeboStep {
   double remaining_error(double dt, std::uint64_t seed);
 
   std::vector<WarmStart> warm_start;
+  std::vector<char> asleep;  ///< whether each body sleeps; it does not move until another wakes it
 
  private:
   using Vector6 = ConstraintRow::Vector6;
@@ -71,7 +79,11 @@ class GazeboStep {
     double relaxation;          ///< relaxation divided by the row's diagonal
   };
 
-  void read_bodies();
+  BodyRange all() const { return {0, bodies_.size()}; }
+  BodyRange vehicle() const { return {0, vehicle_}; }
+  BodyRange free() const { return {vehicle_, bodies_.size()}; }
+  void step(const std::vector<Contact>& contacts, double dt, const BodyRange& range);
+  void read_bodies(const BodyRange& range);
   void prepare_rows();
   void order_rows();
   void put_hinge(std::size_t row);
@@ -80,8 +92,8 @@ class GazeboStep {
   Vector6 inverse_mass_J(const ConstraintRow& row, int side) const;
   Vector6 constraint(std::size_t body, int solve) const;
   void add_multiplier(std::size_t row, const Sweeps::Two& multiplier);
-  void damp();
-  void move(double dt);
+  void damp(const BodyRange& range);
+  void move(double dt, const BodyRange& range);
 
   const std::vector<dBodyID>& ode_bodies_;
   ConstraintRows constraints_;
@@ -92,8 +104,9 @@ class GazeboStep {
   std::vector<Sweeps::Solved*> solved_;  ///< entry of each row in sweeps_
   std::vector<int> place_;               ///< index of each row among the rows of sweeps_
   std::vector<Prepared> prepared_;       ///< data of each row
-  bool simple_hinges_ = true;            ///< whether Sweeps::Hinge contains all rows of the hinges
-  std::size_t friction_begin_ = 0;       ///< first friction row in the order of sweeps_
+  std::size_t vehicle_;                  ///< number of the vehicle's bodies
+  std::size_t simple_hinges_ = 0;   ///< number of the first hinges with only Sweeps::Hinge rows
+  std::size_t friction_begin_ = 0;  ///< first friction row in the order of sweeps_
 };
 
 }  // namespace quadcore

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "beside_contact.hpp"
@@ -54,19 +55,12 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   vehicle_ = std::make_unique<OdeVehicle>(bodies_, world_.get());
   const std::vector<dBodyID>& bodies = vehicle_->bodies();
   gyroscopic_ = std::make_unique<GyroscopicVehicle>(bodies_.model, bodies);
-  const std::vector<Hinge> hinges = vehicle_->hinge_rows();
-  std::vector<double> damping_factors;
-  for (const Link& link : bodies_.model.links) damping_factors.push_back(link.tags.damping_factor);
-  gazebo_step_ = std::make_unique<GazeboStep>(
-      bodies, hinges, sdf_order(bodies_.model),
-      GazeboStep::Options{world.solver_iterations,
-                          world.solver_sor,
-                          world.gravity_W,
-                          {world.erp, world.cfm, max_hinge_correction(world, recipe)},
-                          damping_factors});
-  for (const Hinge& hinge : hinges) rubs_ |= hinge.friction > 0;
-  if (world.ground_plane || !world.obstacles.empty()) {
-    contact_ = std::make_unique<WorldContact>(bodies_.model, bodies, world);
+  free_ = std::make_unique<FreeBodies>(world);
+  all_bodies_ = bodies;
+  all_bodies_.insert(all_bodies_.end(), free_->bodies().begin(), free_->bodies().end());
+  create_step(world);
+  if (world.ground_plane || !world.obstacles.empty() || !free_->empty()) {
+    contact_ = std::make_unique<WorldContact>(bodies_.model, all_bodies_, world);
     gazebo_step_->reserve(contact_->most_on_ground());
     if (rubs_) vehicle_->report_hinge_forces();
   }
@@ -76,6 +70,31 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   }
   gravity_z_ = world.gravity_W.z();
   choose_method(world);
+}
+
+/// Create the sweeps over all bodies. The free ones are the older ones.
+void OdeEngine::create_step(const World& world) {
+  std::vector<Hinge> hinges = vehicle_->hinge_rows();
+  for (const Hinge& hinge : hinges) rubs_ |= hinge.friction > 0;
+  const std::size_t vehicle = vehicle_->bodies().size();
+  const std::vector<Hinge> joints = free_->hinge_rows(vehicle);
+  hinges.insert(hinges.end(), joints.begin(), joints.end());
+  std::vector<GazeboStep::Damping> damping;
+  for (const Link& link : bodies_.model.links) {
+    damping.push_back({link.tags.damping_factor, link.tags.damping_factor});
+  }
+  for (const GazeboStep::Damping& of_free : free_->damping()) damping.push_back(of_free);
+  std::vector<std::size_t> order(free_->bodies().size());
+  std::iota(order.begin(), order.end(), vehicle);
+  for (const std::size_t body : sdf_order(bodies_.model)) order.push_back(body);
+  gazebo_step_ = std::make_unique<GazeboStep>(
+      all_bodies_, std::move(hinges), order,
+      GazeboStep::Options{world.solver_iterations,
+                          world.solver_sor,
+                          world.gravity_W,
+                          {world.erp, world.cfm, max_hinge_correction(world, recipe_)},
+                          damping},
+      vehicle);
 }
 
 /// Decide once whether to use the world's sweeps in flight.
@@ -98,7 +117,7 @@ void OdeEngine::choose_method(const World& world) {
     method << "in flight the solution of ODE's direct solver";
   }
   if (contact_)
-    method << (world.obstacles.empty() ? "; on the ground " : "; in contact ")
+    method << (world.obstacles.empty() && free_->empty() ? "; on the ground " : "; in contact ")
            << world.solver_iterations << " iterations of Gazebo's solver";
   method_ = method.str();
   may_float_ = recipe_.like_gazebo && !iterate_ && !rubs_;
@@ -141,7 +160,11 @@ void OdeEngine::step(double time, double dt, const ForceField& forces) {
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
   if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE would end the process
-  if (!is_afloat(dt) || !float_by(dt)) step_in_ode(dt);
+  if (is_afloat(dt) && float_by(dt)) {
+    step_free(dt);
+  } else {
+    step_in_ode(dt);
+  }
   hinged_.show(kinematics_);
 }
 
@@ -188,13 +211,16 @@ void OdeEngine::step_in_ode(double dt) {
   }
   recipe_.add_gyroscopic(*gyroscopic_, dt);
   static const std::vector<Contact> none;
-  const std::vector<Contact>& contacts = contact_ ? contact_->find() : none;
+  const std::vector<Contact>& contacts = contact_ ? contact_->find(gazebo_step_->asleep) : none;
   gazebo_step_->reserve(contacts.size());
-  if (iterate_ || is_near_contact(dt, !contacts.empty())) {
+  free_->push();
+  put_to_sleep(contacts, dt);
+  if (iterate_ || is_near_contact(dt, touches_vehicle(contacts))) {
     gazebo_step_->step(contacts, dt);
   } else if (solve(dt)) {
     if (contact_) remember_hinge_forces();
     vehicle_->damp();
+    if (!free_->empty()) gazebo_step_->step_free(contacts, dt);
   } else {
     // Start from zero multipliers, so that the step depends only on pose and velocities, the
     // complete state of vehicles in a batch.
@@ -202,6 +228,30 @@ void OdeEngine::step_in_ode(double dt) {
     gazebo_step_->step(contacts, dt);
   }
   hinged_.take(vehicle_->bodies());
+}
+
+/// Move the free bodies alone, while the vehicle is far from them.
+void OdeEngine::step_free(double dt) {
+  const std::vector<char>& asleep = gazebo_step_->asleep;
+  const auto first = asleep.begin() + static_cast<std::ptrdiff_t>(vehicle_->bodies().size());
+  if (std::all_of(first, asleep.end(), [](char sleeps) { return sleeps != 0; })) return;
+  const std::vector<Contact>& contacts = contact_->find_free(asleep);
+  gazebo_step_->reserve(contacts.size());
+  free_->push();
+  put_to_sleep(contacts, dt);
+  gazebo_step_->step_free(contacts, dt);
+}
+
+void OdeEngine::put_to_sleep(const std::vector<Contact>& contacts, double dt) {
+  free_->put_to_sleep(contacts, dt, vehicle_->bodies().size(), gazebo_step_->asleep);
+}
+
+bool OdeEngine::touches_vehicle(const std::vector<Contact>& contacts) const {
+  const std::size_t vehicle = vehicle_->bodies().size();
+  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return contact.body < vehicle ||
+           (contact.other >= 0 && static_cast<std::size_t>(contact.other) < vehicle);
+  });
 }
 
 /// Return whether this step has contacts or follows such a step within the limit of Gazebo's
@@ -253,8 +303,7 @@ void OdeEngine::remember_hinge_forces() const {
 }
 
 void OdeEngine::forget_hinge_forces() {
-  std::fill(gazebo_step_->warm_start.begin(), gazebo_step_->warm_start.end(),
-            GazeboStep::WarmStart{});
+  std::fill_n(gazebo_step_->warm_start.begin(), vehicle_->hinges(), GazeboStep::WarmStart{});
 }
 
 /// Write the motion of the bodies in ODE.
@@ -285,7 +334,8 @@ void OdeEngine::set_state(const VehicleState& state) {
 
 std::size_t OdeEngine::saved_size() const {
   return vehicle_->bodies().size() * (pose_size + velocity_size) +
-         vehicle_->hinges() * 2 * rows_per_hinge + 1;
+         gazebo_step_->warm_start.size() * 2 * rows_per_hinge + free_->saved_size() +
+         free_->bodies().size() + 1;
 }
 
 std::vector<double> OdeEngine::save() const {
@@ -301,6 +351,10 @@ std::vector<double> OdeEngine::save() const {
     to = std::copy(start.pose.begin(), start.pose.end(), to);
     to = std::copy(start.velocity.begin(), start.velocity.end(), to);
   }
+  to = free_->save(to);
+  const std::vector<char>& asleep = gazebo_step_->asleep;
+  to = std::copy(asleep.begin() + static_cast<std::ptrdiff_t>(vehicle_->bodies().size()),
+                 asleep.end(), to);
   *to = steps_since_contact_;
   return saved;
 }
@@ -322,6 +376,10 @@ void OdeEngine::restore(const std::vector<double>& saved) {
     std::copy_n(from, rows_per_hinge, start.pose.begin());
     std::copy_n(from + rows_per_hinge, rows_per_hinge, start.velocity.begin());
     from += 2 * rows_per_hinge;
+  }
+  from = free_->restore(from);
+  for (std::size_t i = vehicle_->bodies().size(); i < all_bodies_.size(); ++i) {
+    gazebo_step_->asleep[i] = *from++ != 0;
   }
   steps_since_contact_ =
       *from >= 0 && *from < steps_beside_contact ? static_cast<int>(*from) : steps_beside_contact;

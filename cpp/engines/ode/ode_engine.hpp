@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "free_bodies.hpp"
 #include "gazebo_step.hpp"
 #include "gyroscopic.hpp"
 #include "hinged_vehicle.hpp"
@@ -44,6 +45,7 @@ class OdeEngine final : public Engine {
   void restore(const std::vector<double>& saved) override;
   std::string method() const override { return method_; }
   std::vector<std::string> warnings() const override { return warnings_; }
+  std::vector<FreeBodyState> free_bodies() const override { return free_->states(); }
 
   /// Return the moving bodies: those of model(), and in gazebo11 also those behind locked joints.
   const Bodies& bodies() const { return bodies_; }
@@ -60,6 +62,7 @@ class OdeEngine final : public Engine {
     void operator()(dxWorld* world) const { dWorldDestroy(world); }
   };
 
+  void create_step(const World& world);
   void choose_method(const World& world);
   double remaining_error(double dt);
   void take_threading();
@@ -67,6 +70,9 @@ class OdeEngine final : public Engine {
   bool float_by(double dt);
   void settle() const;
   void step_in_ode(double dt);
+  void step_free(double dt);
+  bool touches_vehicle(const std::vector<Contact>& contacts) const;
+  void put_to_sleep(const std::vector<Contact>& contacts, double dt);
   bool solve(double dt);
   bool is_near_contact(double dt, bool touching);
   void remember_hinge_forces() const;
@@ -90,6 +96,8 @@ class OdeEngine final : public Engine {
   mutable bool behind_ = false;            ///< whether the bodies in ODE are behind hinged_
   std::unique_ptr<WorldContact> contact_;  ///< null in a world without ground and obstacles
   int steps_since_contact_;                ///< counted only as far as it matters
+  std::unique_ptr<FreeBodies> free_;
+  std::vector<dBodyID> all_bodies_;  ///< those of the vehicle, then the free ones
   std::unique_ptr<GazeboStep> gazebo_step_;
   std::unique_ptr<GyroscopicVehicle> gyroscopic_;
   double gravity_z_ = 0;

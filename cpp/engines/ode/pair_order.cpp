@@ -43,34 +43,54 @@ bool overlap(const Bounds& one, const Bounds& other) {
   return true;
 }
 
-PairOrder::PairOrder(std::vector<Bounds> boxes) {
-  for (const Bounds& box : boxes) models_.push_back({box, level_of(box)});
+PairOrder::PairOrder(const std::vector<Bounds>& boxes) : still_(boxes.size()) {
+  for (const Bounds& box : boxes) {
+    models_.push_back({box, level_of(box), static_cast<int>(models_.size())});
+  }
 }
 
-/// Smaller models come first, the oldest first; they find the vehicle. The vehicle then finds the
-/// larger ones by level and cell, the newest of a cell first, and at last those beyond the levels,
-/// the oldest first.
-const std::vector<ModelPair>& PairOrder::find(const Bounds& vehicle) {
+/// Models that moved come to the front of the space's list, the newest first, and the space goes
+/// through the list from its end.
+const std::vector<ModelPair>& PairOrder::find(const std::vector<MovingModel>& moving) {
+  models_.resize(still_);
+  const int still = static_cast<int>(still_), count = static_cast<int>(moving.size());
+  for (int i = 0; i < count; ++i) {
+    const MovingModel& model = moving[static_cast<std::size_t>(i)];
+    const int rank = model.is_asleep ? still + i : still + 2 * count - i;
+    models_.push_back({model.box, level_of(model.box), rank});
+  }
   found_.clear();
   pairs_.clear();
-  const int own_level = level_of(vehicle);
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    const auto& [box, level] = models_[i];
-    if (!overlap(vehicle, box)) continue;
-    const int age = static_cast<int>(i);
-    const int group = level <= own_level ? lowest_level - 1 : level;
-    const bool in_cells = level > own_level && level != beyond_levels;
-    std::array<int, 5> place = {group, 0, 0, 0, age};
-    for (std::size_t axis = 0; in_cells && axis < 3; ++axis) {
-      place[1 + axis] = first_common_cell(vehicle, box, axis, level);
-    }
-    if (in_cells) place[4] = -age;
-    found_.push_back({place, {i, group < lowest_level}});
+  for (std::size_t i = still_; i < models_.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) add(i, k);
   }
   std::sort(found_.begin(), found_.end(),
             [](const Found& one, const Found& other) { return one.place < other.place; });
   for (const Found& found : found_) pairs_.push_back(found.pair);
   return pairs_;
+}
+
+/// Each model finds those of its own level and of larger ones, by level and cell, and in a cell the
+/// last of the list first. A pair of one level is found by the first of the list. Models beyond the
+/// levels come at last, in the order of the list.
+void PairOrder::add(std::size_t one, std::size_t other) {
+  if (!overlap(models_[one].box, models_[other].box)) return;
+  const auto place_of = [this](std::size_t i) {
+    return std::make_pair(models_[i].level, models_[i].rank);
+  };
+  if (place_of(other) < place_of(one)) std::swap(one, other);
+  const Sized &finder = models_[one], &found = models_[other];
+  std::array<int, 7> place = {0, finder.rank, found.level, 0, 0, 0, 0};
+  if (found.level == beyond_levels) {
+    place = {1, finder.rank, found.rank, 0, 0, 0, 0};
+  } else {
+    int* const cell = place.data() + 3;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      cell[axis] = first_common_cell(finder.box, found.box, axis, found.level);
+    }
+    place[6] = -found.rank;
+  }
+  found_.push_back({place, {one, other}});
 }
 
 }  // namespace quadcore

@@ -7,43 +7,50 @@
 
 namespace quadcore {
 
-/// Axis-aligned bounding box: minimum and maximum of x, y, z [m].
+/// A bounding box along the world's axes: minimum and maximum of x, y, z [m].
 using Bounds = std::array<dReal, 6>;
 
-/// Extend a bounding box by another one.
+/// Extend a box so that it contains another one.
 void extend(Bounds& box, const Bounds& other);
-/// Return whether two bounding boxes touch.
+/// Return whether two boxes touch.
 bool overlap(const Bounds& one, const Bounds& other);
 
-/// An obstacle's model and a vehicle, to be examined for contacts.
+/// A pair of models, as Gazebo passes it to its colliders.
 struct ModelPair {
-  std::size_t obstacle;  ///< index of the obstacle's model
-  bool obstacle_first;   ///< whether the obstacle is the first of the two for the collider
+  std::size_t first, second;  ///< indices of the models
 };
 
-/// Puts pairs of the vehicle and the models of obstacles in the order in which Gazebo 11's hash
-/// space (ODE's dxHashSpace with levels from -2 to 8) finds them. The order of the contacts affects
-/// the result of the sweeps.
+/// A model that moves.
+struct MovingModel {
+  Bounds box;
+  bool is_asleep = false;
+};
+
+/// The order in which the hash space of Gazebo 11's ODE finds the pairs of models of which at least
+/// one moves. Models that stand still have the indices from 0 on, in the order of the file; those
+/// that move follow, the oldest first.
 class PairOrder {
  public:
-  /// \param boxes  bounding box of each obstacle's model, the oldest first
-  explicit PairOrder(std::vector<Bounds> boxes);
+  /// \param boxes  of the models that stand still
+  explicit PairOrder(const std::vector<Bounds>& boxes);
 
-  /// Return the models whose boxes touch the vehicle's.
-  const std::vector<ModelPair>& find(const Bounds& vehicle);
+  /// Return the pairs whose boxes touch. The result is valid until the next call.
+  const std::vector<ModelPair>& find(const std::vector<MovingModel>& moving);
 
  private:
-  struct Model {
+  struct Sized {
     Bounds box;
-    int level;
+    int level;  ///< power of 2 that its longest side does not exceed [m]
+    int rank;   ///< place in the list that the space goes through
   };
-  /// A pair with the place at which the hash space finds it.
   struct Found {
-    std::array<int, 5> place;
+    std::array<int, 7> place;
     ModelPair pair;
   };
+  void add(std::size_t one, std::size_t other);
 
-  std::vector<Model> models_;
+  std::vector<Sized> models_;  ///< those that stand still, then those that move
+  std::size_t still_;          ///< number of the former
   std::vector<Found> found_;
   std::vector<ModelPair> pairs_;
 };

@@ -13,44 +13,45 @@ namespace {
 
 /// Number of points for which Gazebo 11 asks the collider of a pair.
 constexpr int most_points = 250;
-/// The vehicle and the ground, which is the first of the models.
-constexpr ModelPair ground_pair = {0, false};
 
-dGeomID create_shape(const Collision& collision) {
-  const Vector3d& size = collision.size;
-  switch (collision.kind) {
+/// Return the geom of a box, cylinder or sphere, or null.
+dGeomID create_geom(ShapeKind kind, const Vector3d& size) {
+  switch (kind) {
     case ShapeKind::box:
       return dCreateBox(nullptr, size.x(), size.y(), size.z());
     case ShapeKind::cylinder:
       return dCreateCylinder(nullptr, size.x(), size.y());
     case ShapeKind::sphere:
       return dCreateSphere(nullptr, size.x());
-    case ShapeKind::mesh:
-      break;
+    default:
+      return nullptr;
   }
+}
+
+dGeomID create_shape(const Collision& collision) {
+  if (const dGeomID geom = create_geom(collision.kind, collision.size)) return geom;
   throw InputError(collision.where +
                    ": contact of a collision mesh with the ground is not modelled. Use a box, "
                    "cylinder or sphere, or a world without ground.");
 }
 
+/// Return the geom of triangles, which must outlive it.
+dGeomID create_mesh(const TriangleMesh& mesh) {
+  const dTriMeshDataID data = dGeomTriMeshDataCreate();
+  dGeomTriMeshDataBuildSingle(
+      data, mesh.vertices.data(), sizeof mesh.vertices[0], static_cast<int>(mesh.vertices.size()),
+      mesh.triangles.data(), static_cast<int>(3 * mesh.triangles.size()), sizeof mesh.triangles[0]);
+  return dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr);
+}
+
 /// Return the geom of an obstacle at its place.
 dGeomID create_solid(const Obstacle& obstacle) {
-  const Vector3d& size = obstacle.size;
-  const Vector3d& p = obstacle.position_W;
-  dGeomID geom = nullptr;
-  switch (obstacle.kind) {
-    case ObstacleKind::box:
-      geom = dCreateBox(nullptr, size.x(), size.y(), size.z());
-      break;
-    case ObstacleKind::cylinder:
-      geom = dCreateCylinder(nullptr, size.x(), size.y());
-      break;
-    case ObstacleKind::sphere:
-      geom = dCreateSphere(nullptr, size.x());
-      break;
-    case ObstacleKind::plane:
-      return dCreatePlane(nullptr, size.x(), size.y(), size.z(), p.z());
+  const Vector3d &size = obstacle.size, &p = obstacle.position_W;
+  if (obstacle.kind == ShapeKind::plane) {
+    return dCreatePlane(nullptr, size.x(), size.y(), size.z(), p.z());
   }
+  const dGeomID geom = obstacle.kind == ShapeKind::mesh ? create_mesh(*obstacle.mesh)
+                                                        : create_geom(obstacle.kind, size);
   const Quaterniond& q = obstacle.orientation_W;
   const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
   dGeomSetPosition(geom, p.x(), p.y(), p.z());
@@ -61,23 +62,10 @@ dGeomID create_solid(const Obstacle& obstacle) {
 Obstacle create_ground(const Surface& surface) {
   Obstacle ground;
   ground.model = "ground_plane";
-  ground.kind = ObstacleKind::plane;
+  ground.kind = ShapeKind::plane;
   ground.size = Vector3d::UnitZ();
   ground.surface = surface;
   return ground;
-}
-
-/// Return an upper bound of the distance of a shape's points from its centre.
-double radius(const Collision& collision) {
-  const Vector3d& size = collision.size;
-  switch (collision.kind) {
-    case ShapeKind::box:
-      return size.norm() / 2;
-    case ShapeKind::cylinder:
-      return size.x() + size.y() / 2;
-    default:
-      return size.x();
-  }
 }
 
 /// Return an upper bound of the distance of a model's shapes from the frame's centre of mass [m].
@@ -90,7 +78,8 @@ double reach_of_shapes(const Model& model) {
   double reach = 0;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     for (const Collision& collision : model.links[i].collisions) {
-      reach = std::max(reach, arms[i] + collision.pose.xyz.norm() + radius(collision));
+      reach = std::max(reach, arms[i] + collision.pose.xyz.norm() +
+                                  outer_radius(collision.kind, collision.size));
     }
   }
   return reach + model.links[0].inertial.pose.xyz.norm();
@@ -134,23 +123,25 @@ WorldContact::WorldContact(const Model& model, const std::vector<dBodyID>& bodie
     add_obstacle(obstacle);
   }
   std::vector<Bounds> boxes;
-  for (std::vector<Solid>& solids : models_) {
-    std::reverse(solids.begin(), solids.end());
-    boxes.push_back(solids.front().box);
-    for (const Solid& solid : solids) extend(boxes.back(), solid.box);
+  for (Shapes& shapes : models_) {
+    std::reverse(shapes.begin(), shapes.end());
+    boxes.push_back(shapes.front().box);
+    for (const Shape& shape : shapes) extend(boxes.back(), shape.box);
   }
-  order_ = std::make_unique<PairOrder>(std::move(boxes));
+  order_ = std::make_unique<PairOrder>(boxes);
+  still_ = models_.size();
+  add_free_bodies(world, model.links.size());
+  models_.emplace_back();
   for (std::size_t i = 0; i < model.links.size(); ++i) {
-    for (const Collision& collision : model.links[i].collisions) {
-      add_shape(collision, model, i, bodies);
-    }
+    for (const Collision& collision : model.links[i].collisions) add_shape(collision, model, i);
   }
   contacts_.reserve(most_on_ground());
+  moving_.reserve(models_.size() - still_);
 }
 
 std::size_t WorldContact::most_on_ground() const {
   std::size_t most = 0;
-  for (const Shape& shape : shapes_) {
+  for (const Shape& shape : vehicle()) {
     most += static_cast<std::size_t>(
         std::min({shape.surface.max_contacts, max_contacts_, most_points}));
   }
@@ -160,87 +151,174 @@ std::size_t WorldContact::most_on_ground() const {
 void WorldContact::add_obstacle(const Obstacle& obstacle) {
   Geom geom(create_solid(obstacle));
   const Bounds box = bounds_of(geom.get());
-  models_.back().push_back(
-      {std::move(geom), obstacle.surface, obstacle.slip1, obstacle.slip2, box});
+  models_.back().push_back({std::move(geom), -1, obstacle.surface, obstacle.slip1, obstacle.slip2,
+                            obstacle.restitution, obstacle.restitution_speed, obstacle.mesh, box});
 }
 
-void WorldContact::add_shape(const Collision& collision, const Model& model, std::size_t link,
-                             const std::vector<dBodyID>& bodies) {
+/// Add the free bodies, which are in the list of bodies from an index on.
+void WorldContact::add_free_bodies(const World& world, std::size_t first) {
+  std::string last;
+  for (std::size_t i = 0; i < world.free_bodies.size(); ++i) {
+    const FreeBody& free = world.free_bodies[i];
+    const dBodyID body = bodies_[first + i];
+    balls_.push_back({body, 0});
+    if (free.shapes.empty()) continue;
+    if (models_.size() == still_ || free.model != last || free.collides_own) {
+      models_.emplace_back();
+    }
+    last = free.model;
+    for (const Obstacle& given : free.shapes) {
+      Surface surface = given.surface;
+      surface.max_vel = free.shapes.back().surface.max_vel;
+      surface.min_depth = free.shapes.back().surface.min_depth;
+      Geom geom(create_solid(given));
+      const Vector3d p = given.position_W;
+      const Quaterniond& q = given.orientation_W;
+      const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
+      dGeomSetBody(geom.get(), body);
+      dGeomSetOffsetWorldPosition(geom.get(), p.x(), p.y(), p.z());
+      dGeomSetOffsetWorldQuaternion(geom.get(), ode_q);
+      double& radius = balls_.back().radius;
+      radius = std::max(radius, (p - vec(dBodyGetPosition(body))).norm() + outer_radius(given));
+      models_.back().push_back({std::move(geom), static_cast<int>(first + i), surface, given.slip1,
+                                given.slip2, given.restitution, given.restitution_speed,
+                                given.mesh});
+    }
+  }
+  for (const FreeJoint& joint : world.free_joints) {
+    if (joint.parent == FreeJoint::world) continue;
+    const auto ends = std::minmax(joint.child, joint.parent);
+    joined_.emplace(static_cast<int>(first + ends.first), static_cast<int>(first + ends.second));
+  }
+}
+
+void WorldContact::add_shape(const Collision& collision, const Model& model, std::size_t link) {
   const dGeomID geom = create_shape(collision);
   Surface surface = collision.surface;
   // Gazebo's ODE stores these two per body, so the values of the last shape count.
   surface.max_vel = model.links[link].collisions.back().surface.max_vel;
   surface.min_depth = model.links[link].collisions.back().surface.min_depth;
-  shapes_.push_back({Geom(geom), link, surface});
+  vehicle().push_back({Geom(geom), static_cast<int>(link), surface});
   const Vector3d p_cm = collision.pose.xyz - model.links[link].inertial.pose.xyz;
   const Quaterniond q = collision.pose.rotation();
   const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
-  reaches_.push_back({link, p_cm.norm() + radius(collision)});
-  dGeomSetBody(geom, bodies[link]);
+  reaches_.push_back({link, p_cm.norm() + outer_radius(collision.kind, collision.size)});
+  dGeomSetBody(geom, bodies_[link]);
   dGeomSetOffsetPosition(geom, p_cm.x(), p_cm.y(), p_cm.z());
   dGeomSetOffsetQuaternion(geom, ode_q);
 }
 
-const std::vector<Contact>& WorldContact::find() {
+const std::vector<Contact>& WorldContact::find(const std::vector<char>& asleep) {
   contacts_.clear();
-  if (shapes_.empty()) return contacts_;
-  const Bounds box = find_bounds();
-  if (!is_obstacle_ahead(0)) {
-    if (has_ground_) collide(ground_pair);
+  find_free_bounds(asleep);
+  if (vehicle().empty()) return find_pairs();
+  moving_.push_back(find_bounds(vehicle(), asleep));
+  if (balls_.empty() && !is_obstacle_ahead(0)) {
+    if (has_ground_) collide({models_.size() - 1, 0});
     return contacts_;
   }
-  for (const ModelPair& pair : order_->find(box)) collide(pair);
+  return find_pairs();
+}
+
+const std::vector<Contact>& WorldContact::find_free(const std::vector<char>& asleep) {
+  contacts_.clear();
+  find_free_bounds(asleep);
+  return find_pairs();
+}
+
+void WorldContact::find_free_bounds(const std::vector<char>& asleep) {
+  moving_.clear();
+  for (std::size_t i = still_; i + 1 < models_.size(); ++i) {
+    moving_.push_back(find_bounds(models_[i], asleep));
+  }
+}
+
+const std::vector<Contact>& WorldContact::find_pairs() {
+  if (!moving_.empty()) {
+    for (const ModelPair& pair : order_->find(moving_)) collide(pair);
+    for (const auto& [one, other] : of_meshes_) touch(*one, *other);
+    of_meshes_.clear();
+  }
   return contacts_;
 }
 
-/// Update the bounding boxes of the shapes and return that of all.
-Bounds WorldContact::find_bounds() {
-  for (Shape& shape : shapes_) shape.box = bounds_of(shape.geom.get());
-  Bounds all = shapes_.front().box;
-  for (const Shape& shape : shapes_) extend(all, shape.box);
+/// Update the bounding boxes of the shapes of a model, and return that of all.
+MovingModel WorldContact::find_bounds(Shapes& shapes, const std::vector<char>& asleep) const {
+  MovingModel all;
+  all.is_asleep = true;
+  for (Shape& shape : shapes) {
+    shape.box = bounds_of(shape.geom.get());
+    all.is_asleep &= asleep[static_cast<std::size_t>(shape.body)] != 0;
+  }
+  all.box = shapes.front().box;
+  for (const Shape& shape : shapes) extend(all.box, shape.box);
   return all;
 }
 
-/// Collide all shapes of a vehicle and a model. Gazebo's outer loop is over the one with fewer
-/// shapes, otherwise over the second.
+/// Collide all shapes of two models. Gazebo's outer loop is over the one with fewer shapes,
+/// otherwise over the second.
 void WorldContact::collide(const ModelPair& pair) {
-  const std::vector<Solid>& solids = models_[pair.obstacle];
-  const bool has_fewer =
-      pair.obstacle_first ? solids.size() < shapes_.size() : solids.size() <= shapes_.size();
-  if (has_fewer) {
-    for (const Solid& solid : solids) {
-      for (const Shape& shape : shapes_) touch(shape, solid, pair.obstacle_first);
+  const Shapes &first = models_[pair.first], &second = models_[pair.second];
+  if (second.size() <= first.size()) {
+    for (const Shape& other : second) {
+      for (const Shape& one : first) meet(one, other);
     }
   } else {
-    for (const Shape& shape : shapes_) {
-      for (const Solid& solid : solids) touch(shape, solid, pair.obstacle_first);
+    for (const Shape& one : first) {
+      for (const Shape& other : second) meet(one, other);
     }
   }
 }
 
-void WorldContact::touch(const Shape& shape, const Solid& solid, bool solid_first) {
-  if (!overlap(shape.box, solid.box)) return;
-  const dGeomID first = solid_first ? solid.geom.get() : shape.geom.get();
-  const dGeomID second = solid_first ? shape.geom.get() : solid.geom.get();
-  const Surface &own = shape.surface, &other = solid.surface;
-  const int found = dCollide(first, second, most_points, touching_.data(), sizeof(dContactGeom));
-  const int kept = keep_points(touching_, found,
-                               std::min({own.max_contacts, other.max_contacts, max_contacts_}));
+bool WorldContact::are_joined(const Shape& one, const Shape& other) const {
+  return !joined_.empty() && joined_.count(std::minmax(one.body, other.body));
+}
+
+/// Gazebo collides meshes after all other pairs.
+void WorldContact::meet(const Shape& one, const Shape& other) {
+  if (!overlap(one.box, other.box) || are_joined(one, other)) return;
+  if (one.mesh || other.mesh) {
+    of_meshes_.emplace_back(&one, &other);
+  } else {
+    touch(one, other);
+  }
+}
+
+/// Add the contacts of two shapes, the first of which has the say in the direction of friction.
+void WorldContact::touch(const Shape& one, const Shape& other) {
+  const int found = dCollide(one.geom.get(), other.geom.get(), most_points, touching_.data(),
+                             sizeof(dContactGeom));
+  const int kept =
+      keep_points(touching_, found,
+                  std::min({one.surface.max_contacts, other.surface.max_contacts, max_contacts_}));
   if (kept == 0) return;
-  const SurfacePair surface = {joint_stiffness(own, other),
-                               joint_damping(own, other),
-                               joint_mu1(own, other),
-                               joint_mu2(own, other),
-                               std::min(own.max_vel, max_correction_),
-                               kept * solid.slip1,
-                               kept * solid.slip2};
+  // Of a static shape these do not count.
+  double max_vel = max_correction_, min_depth = 0;
+  bool is_first = true;
+  for (const Shape* shape : {&one, &other}) {
+    if (shape->body < 0) continue;
+    max_vel = std::min(max_vel, shape->surface.max_vel);
+    min_depth = is_first ? shape->surface.min_depth : std::min(min_depth, shape->surface.min_depth);
+    is_first = false;
+  }
+  const SurfacePair surface = {joint_stiffness(one.surface, other.surface),
+                               joint_damping(one.surface, other.surface),
+                               joint_mu1(one.surface, other.surface),
+                               joint_mu2(one.surface, other.surface),
+                               max_vel,
+                               kept * (one.slip1 + other.slip1),
+                               kept * (one.slip2 + other.slip2),
+                               std::min(one.restitution, other.restitution),
+                               std::min(one.restitution_speed, other.restitution_speed)};
   // Gazebo uses only the first shape's direction of friction.
-  const Vector3d fdir1_W = rotation(dGeomGetRotation(first)) * (solid_first ? other : own).fdir1;
+  const Vector3d fdir1_W = rotation(dGeomGetRotation(one.geom.get())) * one.surface.fdir1;
+  const bool is_on_second = one.body < 0;
   for (int i = 0; i < kept; ++i) {
     const dContactGeom& point = touching_[static_cast<std::size_t>(i)];
-    const Vector3d normal_W = solid_first ? (-vec(point.normal)).eval() : vec(point.normal).eval();
-    contacts_.push_back({shape.body, vec(point.pos), normal_W, fdir1_W,
-                         std::max(0.0, point.depth - own.min_depth), surface});
+    const Vector3d normal_W = is_on_second ? (-vec(point.normal)).eval() : vec(point.normal).eval();
+    contacts_.push_back({static_cast<std::size_t>(is_on_second ? other.body : one.body),
+                         vec(point.pos), normal_W, fdir1_W, std::max(0.0, point.depth - min_depth),
+                         surface, is_on_second ? -1 : other.body});
   }
 }
 
@@ -254,16 +332,21 @@ bool WorldContact::is_obstacle_ahead(double time) {
 }
 
 bool WorldContact::is_clear(const Vector3d& p_WFcm, const Vector3d& v_WFcm_W, double time) {
-  if (clear_ball_.is_empty()) return true;
   const double fallen = gravity_W_.norm() * time * time / 2;
+  for (const Ball& ball : balls_) {
+    const Vector3d away_W = vec(dBodyGetPosition(ball.body)) - p_WFcm;
+    const double closer = time * (v_WFcm_W - vec(dBodyGetLinearVel(ball.body))).norm();
+    if (!(away_W.norm() > reach_ + ball.radius + 2 * fallen + closer)) return false;
+  }
+  if (clear_ball_.is_empty()) return true;
   return clear_ball_.is_free(p_WFcm, reach_ + fallen + time * v_WFcm_W.norm());
 }
 
 bool WorldContact::is_ground_ahead(double time) const {
   const Vector3d w_WF_W = vec(dBodyGetAngularVel(bodies_[0]));
   const double fallen = std::min(0.0, gravity_W_.z()) * time * time / 2;
-  for (const Shape& shape : shapes_) {
-    const dBodyID body = bodies_[shape.body];
+  for (const Shape& shape : vehicle()) {
+    const dBodyID body = bodies_[static_cast<std::size_t>(shape.body)];
     const Vector3d arm_W = vec(dGeomGetPosition(shape.geom.get())) - vec(dBodyGetPosition(body));
     const Bounds box = bounds_of(shape.geom.get());
     const double reach = Vector3d(box[1] - box[0], box[3] - box[2], box[5] - box[4]).norm() / 2;

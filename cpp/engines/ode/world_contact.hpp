@@ -3,6 +3,8 @@
 #include <ode/ode.h>
 
 #include <memory>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "clear_ball.hpp"
@@ -19,11 +21,12 @@ struct Reach {
   double length;
 };
 
-/// Finds contacts of a vehicle's collision shapes with the ground plane and the obstacles of a
-/// world, in Gazebo 11's order. Links of one model do not collide with each other.
+/// Finds contacts of a vehicle and of free bodies with each other, the ground plane and the
+/// obstacles of a world, in Gazebo 11's order. Links of one model do not collide with each other,
+/// unless the world says so.
 class WorldContact {
  public:
-  /// \param bodies  one per link of the model, each at its link's centre of mass.
+  /// \param bodies  one per link of the vehicle, then the free bodies, each at its centre of mass.
   /// Throws InputError for a shape without contact model (a mesh).
   WorldContact(const Model& model, const std::vector<dBodyID>& bodies, const World& world);
 
@@ -35,7 +38,10 @@ class WorldContact {
   bool has_ground() const { return has_ground_; }
 
   /// Return the contacts of the present poses.
-  const std::vector<Contact>& find();
+  /// \param asleep  whether each body sleeps
+  const std::vector<Contact>& find(const std::vector<char>& asleep);
+  /// Return those without the vehicle.
+  const std::vector<Contact>& find_free(const std::vector<char>& asleep);
 
   /// Return whether a shape may be in the ground or an obstacle within `time` [s] at the present
   /// velocities. Shapes of rotors are treated as turning only with the frame.
@@ -47,42 +53,61 @@ class WorldContact {
 
  private:
   struct DestroyGeom {
-    void operator()(dxGeom* geom) const { dGeomDestroy(geom); }
+    void operator()(dxGeom* geom) const {
+      const dTriMeshDataID data =
+          dGeomGetClass(geom) == dTriMeshClass ? dGeomTriMeshGetData(geom) : nullptr;
+      dGeomDestroy(geom);
+      if (data) dGeomTriMeshDataDestroy(data);
+    }
   };
   using Geom = std::unique_ptr<dxGeom, DestroyGeom>;
+  /// A collision shape of a body, or of an obstacle.
   struct Shape {
     Geom geom;
-    std::size_t body;
+    int body;  ///< -1 for one that stands still
     Surface surface;
+    double slip1 = 0, slip2 = 0;
+    double restitution = 0, restitution_speed = 0;
+    std::shared_ptr<const TriangleMesh> mesh = {};  ///< null unless it is a mesh
     Bounds box = {};
   };
-  struct Solid {
-    Geom geom;
-    Surface surface;
-    double slip1, slip2;
-    Bounds box;
+  using Shapes = std::vector<Shape>;
+  /// A ball around all shapes of a free body.
+  struct Ball {
+    dBodyID body;
+    double radius;  ///< from its centre of mass [m]
   };
 
   void add_obstacle(const Obstacle& obstacle);
-  void add_shape(const Collision& collision, const Model& model, std::size_t link,
-                 const std::vector<dBodyID>& bodies);
-  Bounds find_bounds();
+  void add_free_bodies(const World& world, std::size_t first);
+  void add_shape(const Collision& collision, const Model& model, std::size_t link);
+  MovingModel find_bounds(Shapes& shapes, const std::vector<char>& asleep) const;
+  void find_free_bounds(const std::vector<char>& asleep);
+  const std::vector<Contact>& find_pairs();
   void collide(const ModelPair& pair);
-  void touch(const Shape& shape, const Solid& solid, bool solid_first);
+  void meet(const Shape& one, const Shape& other);
+  void touch(const Shape& one, const Shape& other);
+  bool are_joined(const Shape& one, const Shape& other) const;
   bool is_ground_ahead(double time) const;
   bool is_obstacle_ahead(double time);
+  Shapes& vehicle() { return models_.back(); }
+  const Shapes& vehicle() const { return models_.back(); }
 
   const std::vector<dBodyID>& bodies_;
   Vector3d gravity_W_;
   double max_correction_;
   int max_contacts_;
   bool has_ground_;
-  std::vector<std::vector<Solid>> models_;  ///< shapes of each obstacle's model, the newest first
-  std::vector<Shape> shapes_;
+  std::size_t still_ = 0;       ///< number of the models that stand still
+  std::vector<Shapes> models_;  ///< obstacles, the newest shape first; free models; the vehicle
+  std::vector<Ball> balls_;     ///< of the free bodies
+  std::set<std::pair<int, int>> joined_;  ///< free bodies that a joint connects
   std::vector<Reach> reaches_;
   double reach_ = 0;  ///< reach of all shapes from the frame's centre of mass [m]
   ClearBall clear_ball_;
   std::unique_ptr<PairOrder> order_;
+  std::vector<MovingModel> moving_;
+  std::vector<std::pair<const Shape*, const Shape*>> of_meshes_;
   std::vector<dContactGeom> touching_;
   std::vector<Contact> contacts_;
 };

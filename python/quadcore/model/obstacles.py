@@ -14,7 +14,7 @@ _LENGTHS = {"box": 3, "cylinder": 2, "sphere": 1}
 
 
 def draw_world(world: World) -> DrawnWorld:
-    """Return the ground and the obstacles of a world. Planes, which are infinite, are left out."""
+    """Return the ground and the obstacles of a world, except infinite planes and meshes."""
     shapes = []
     for obstacle in world.obstacles:
         if obstacle.kind not in _LENGTHS:

@@ -56,6 +56,8 @@ class Engine {
 
   /// Return the integration method in one line.
   virtual std::string method() const = 0;
+  /// Return the present motion of the world's free bodies.
+  virtual std::vector<FreeBodyState> free_bodies() const { return {}; }
   /// Return warnings about model and world, starting with FILE:LINE.
   virtual std::vector<std::string> warnings() const { return {}; }
 };

@@ -102,6 +102,8 @@ class Simulation : private ForceField {
   const std::string& engine_name() const { return engine_name_; }
   /// Return the integration method of the engine in one line.
   std::string method() const { return engine_->method(); }
+  /// Return the present motion of the world's free bodies, in the order of World::free_bodies.
+  std::vector<FreeBodyState> free_bodies() const { return engine_->free_bodies(); }
   /// Return the model as the engine simulates it, including attached bodies.
   const Model& model() const { return engine_->model(); }
   /// Return the number of rotor joints.

@@ -27,6 +27,8 @@ const char* const pressure = "air pressure";
 const char* const contact = "forces and contacts";
 const char* const score = "score of a task";
 const char* const connection = "connection of topics";
+const char* const picture = "pictures only";
+const char* const successor = "for Gazebo's successor; Gazebo classic ignores it";
 
 }  // namespace
 
@@ -107,6 +109,15 @@ const std::vector<HarmlessElement>& list_harmless_elements() {
       {"libSimEventsPlugin.so", "", "events of the simulation"},
       {"libusv_gazebo_wind_plugin.so", "", "wind on the boats that it names"},
       {"libWavefieldModelPlugin.so", "", "waves for boats"},
+      {"libmodel_visuals.so", "", picture},
+      {"libprojector_plugin.so", "", picture},
+      {"libhello_world.so", "", "message on the console"},
+      {"libgazebo_ros_power_monitor.so", "", "state of a battery"},
+      {"gz-sim-physics-system", "", successor},
+      {"gz-sim-user-commands-system", "", successor},
+      {"gz-sim-scene-broadcaster-system", "", successor},
+      {"gz-sim-sensors-system", "", successor},
+      {"gz-sim-imu-system", "", successor},
       {"libgazebo_ros.so", "", connection},
       {"libgazebo_ros_api_plugin.so", "", connection},
       {"libgazebo_ros_state.so", "", connection},

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 
+#include "embedded_meshes.hpp"
 #include "model_path.hpp"
+#include "old_sdf.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "xml.hpp"
@@ -54,9 +57,9 @@ class Embedding {
 
   Document embed() {
     IgnoredElements none;
-    const Xml xml(world_, "sdf", none);
+    const Xml xml(world_, "sdf", none, old_sdf_root);
     chain_ = {world_.name};
-    write(xml.root(), world_);
+    write_root(xml.root(), world_);
     return has_embedded_ ? result_ : world_;
   }
 
@@ -68,13 +71,27 @@ class Embedding {
                                                      : std::make_pair(source.name, number));
   }
 
+  void write_root(const Element& root, const Document& source) {
+    const bool was_old = is_old_;
+    is_old_ = root.Name() == std::string(old_sdf_root);
+    has_embedded_ |= is_old_;
+    write(root, source);
+    is_old_ = was_old;
+  }
+
   void write(const Element& element, const Document& source) {
-    const std::string name = element.Name();
+    const NewElement written = convert_element(element, is_old_);
+    const std::string& name = written.name;
+    const int number = element.GetLineNum();
     std::string line = "<" + name;
-    for (const auto* a = element.FirstAttribute(); a; a = a->Next()) {
-      line += std::string(" ") + a->Name() + "=\"" + escape(a->Value()) + "\"";
+    for (const auto& [attribute, value] : written.attributes) {
+      line += " " + attribute + "=\"" + escape(value) + "\"";
     }
-    add_line(line + ">", source, element.GetLineNum());
+    add_line(line + ">", source, number);
+    if (!written.text.empty()) add_line(escape(written.text), source, number);
+    for (const auto& [child, value] : written.children) {
+      add_line("<" + child + ">" + escape(value) + "</" + child + ">", source, number);
+    }
     for (const Node* node = element.FirstChild(); node; node = node->NextSibling()) {
       if (const Element* child = node->ToElement()) {
         write(*child, source);
@@ -85,7 +102,8 @@ class Embedding {
       }
     }
     if (name == "include" && !element.FirstChildElement("sdf")) embed(element, source);
-    add_line("</" + name + ">", source, element.GetLineNum());
+    if (name == "mesh") embed_triangles(element, source);
+    add_line("</" + name + ">", source, number);
   }
 
   void embed(const Element& include, const Document& source) {
@@ -104,8 +122,8 @@ class Embedding {
     chain_.push_back(found);
     try {
       IgnoredElements none;
-      const Xml xml(model, "sdf", none);
-      write(xml.root(), model);
+      const Xml xml(model, "sdf", none, old_sdf_root);
+      write_root(xml.root(), model);
     } catch (const InputError& error) {
       const std::string what = error.what();
       const bool suggests = what.find("--ignore") != std::string::npos;
@@ -114,13 +132,29 @@ class Embedding {
     chain_.pop_back();
   }
 
+  /// Write the triangles of a `<mesh>` that something can touch, for the first one of its file.
+  void embed_triangles(const Element& mesh, const Document& source) {
+    const Element* geometry = mesh.Parent()->ToElement();
+    const Element* collision = geometry ? geometry->Parent()->ToElement() : nullptr;
+    if (!collision || collision->Name() != std::string("collision")) return;
+    const std::string key = mesh_key(mesh);
+    if (mesh.FirstChildElement(embedded_mesh)) embedded_.insert(key);
+    const std::string found = path_.find_file(mesh_uri(mesh));
+    if (found.empty() || !embedded_.insert(key).second) return;
+    has_embedded_ = true;
+    const std::string tag = embedded_mesh;
+    std::istringstream lines("<" + tag + ">\n" + embed_mesh(found, mesh) + "\n</" + tag + ">");
+    for (std::string line; std::getline(lines, line);) add_line(line, source, mesh.GetLineNum());
+  }
+
   const Document& world_;
   const std::vector<std::string>& ignore_;
   ModelPath path_;
   Document result_{world_.name, ""};
   std::vector<std::string> chain_;  ///< files that contain one another, outermost first
-  std::set<std::string> embedded_;  ///< URIs
-  bool has_embedded_ = false;
+  std::set<std::string> embedded_;  ///< URIs of models, and keys of meshes
+  bool has_embedded_ = false;       ///< whether the result differs from the world
+  bool is_old_ = false;             ///< whether the document that is written is SDF 1.0 to 1.2
 };
 
 }  // namespace

@@ -67,29 +67,38 @@ ModelPath::ModelPath() : folders_(folders_of("GAZEBO_MODEL_PATH")) {
   }
 }
 
-std::string ModelPath::find(const std::string& uri) {
-  if (const std::string path = after(uri, "file://"); !path.empty()) return find_sdf(path);
+/// Return the first place of a URI for which `find` returns a file.
+template <class Find>
+std::string ModelPath::find_by(const std::string& uri, const Find& find) {
+  if (const std::string path = after(uri, "file://"); !path.empty()) return find(path);
   if (const std::string path = after(uri, "package://"); !path.empty()) {
     const std::size_t slash = std::min(path.find('/'), path.size());
     for (const Package& package : packages()) {
-      if (package.name == path.substr(0, slash))
-        return find_sdf(package.folder + path.substr(slash));
+      if (package.name == path.substr(0, slash)) return find(package.folder + path.substr(slash));
     }
     return "";
   }
   const std::string name = after(uri, "model://");
   if (name.empty()) return "";
   for (const std::string& folder : folders_) {
-    const std::string found = find_sdf(fs::path(folder) / name);
+    const std::string found = find(fs::path(folder) / name);
     if (!found.empty()) return found;
   }
   for (const Package& package : packages()) {
     for (const std::string& folder : package.model_folders) {
-      const std::string found = find_sdf(fs::path(folder) / name);
+      const std::string found = find(fs::path(folder) / name);
       if (!found.empty()) return found;
     }
   }
   return "";
+}
+
+std::string ModelPath::find(const std::string& uri) {
+  return find_by(uri, [](const fs::path& path) { return find_sdf(path); });
+}
+
+std::string ModelPath::find_file(const std::string& uri) {
+  return find_by(uri, [](const fs::path& path) { return is_file(path) ? path.string() : ""; });
 }
 
 const std::vector<ModelPath::Package>& ModelPath::packages() {

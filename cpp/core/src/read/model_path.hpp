@@ -16,6 +16,8 @@ class ModelPath {
   /// there is none. A folder's model.config names the file for each version of SDF; the newest
   /// version up to 1.7 counts, which is Gazebo 11's.
   std::string find(const std::string& uri);
+  /// Return the file of `model://NAME/FILE`, `package://NAME/FILE` or `file://PATH`, or "".
+  std::string find_file(const std::string& uri);
 
  private:
   struct Package {
@@ -23,6 +25,8 @@ class ModelPath {
     std::vector<std::string> model_folders;
   };
   const std::vector<Package>& packages();
+  template <class Find>
+  std::string find_by(const std::string& uri, const Find& find);
 
   std::vector<std::string> folders_;
   std::vector<Package> packages_;

@@ -37,15 +37,25 @@ Placement SdfFrames::find_pose(const Xml::Element& element, int depth) const {
     const Xml::Element* child = xml_.child(element, "child");
     if (child) base = xml_.text(*child);
   }
-  if (base.empty() || base == "__model__" || base == "world") return own;
-  const auto frame = frames_.find(base);
+  if (base.empty()) return own;
+  return find_frame(pose ? *pose : element, base, depth) * own;
+}
+
+Placement SdfFrames::find_frame(const Xml::Element& element, const std::string& name) const {
+  return find_frame(element, name, 0);
+}
+
+Placement SdfFrames::find_frame(const Xml::Element& element, const std::string& name,
+                                int depth) const {
+  if (name == "__model__" || name == "world") return {};
+  const auto frame = frames_.find(name);
   if (frame == frames_.end()) {
-    xml_.fail(pose ? *pose : element, "the frame '" + base + "' does not exist. Correct its name.");
+    xml_.fail(element, "the frame '" + name + "' does not exist. Correct its name.");
   }
   if (depth == longest_chain_of_frames) {
-    xml_.fail(element, "the frame '" + base + "' is relative to itself. Correct <pose>.");
+    xml_.fail(element, "the frame '" + name + "' is relative to itself. Correct <pose>.");
   }
-  return find_pose(*frame->second, depth + 1) * own;
+  return find_pose(*frame->second, depth + 1);
 }
 
 }  // namespace quadcore

@@ -18,9 +18,12 @@ class SdfFrames {
   /// Return the pose of a child of the owner, or of an element inside such a child, whose poses are
   /// relative to the owner unless `relative_to` names another frame.
   Placement find_pose(const Xml::Element& element) const;
+  /// Return the pose of a frame to which an element refers by name.
+  Placement find_frame(const Xml::Element& element, const std::string& name) const;
 
  private:
   Placement find_pose(const Xml::Element& element, int depth) const;
+  Placement find_frame(const Xml::Element& element, const std::string& name, int depth) const;
 
   const Xml& xml_;
   bool has_frames_;

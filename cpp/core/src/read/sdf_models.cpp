@@ -9,8 +9,10 @@
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "sdf_frames.hpp"
+#include "sdf_free_bodies.hpp"
 #include "sdf_shape.hpp"
 #include "sdf_state.hpp"
+#include "sdf_values.hpp"
 #include "sdf_version.hpp"
 
 namespace quadcore {
@@ -18,12 +20,12 @@ namespace {
 
 using Element = Xml::Element;
 
-/// Elements of a model that a model that stands still does not have an effect with.
-const std::set<std::string> still_elements = {"static",      "self_collide", "allow_auto_disable",
+/// Elements of a model that are read, or have an effect only on what moves.
+const std::set<std::string> known_elements = {"static",      "self_collide", "allow_auto_disable",
                                               "enable_wind", "joint",        "frame",
                                               "gripper",     "pose"};
-/// Elements of a link without an effect if the link stands still.
-const std::set<std::string> still_link_elements = {
+/// The same of a link.
+const std::set<std::string> known_link_elements = {
     "pose",        "visual", "inertial",       "gravity", "kinematic",        "self_collide",
     "enable_wind", "light",  "velocity_decay", "damping", "must_be_base_link"};
 
@@ -147,8 +149,10 @@ class ModelReader {
       const bool overrides = given.include && given.include->FirstChildElement("pose");
       const Placement pose =
           overrides || !given.include ? world_frames_.find_pose(place) : read_own_pose(given);
+      const std::size_t bodies = found_.free_bodies.size(), joints = found_.free_joints.size();
       read_model(given, name, pose, pose, false,
                  saved == saved_.models.end() ? SavedModel() : saved->second);
+      drop_without_shapes(bodies, joints);
     } catch (const InputError& error) {
       const std::string what = error.what();
       if (name.empty() || what.find("--ignore") != std::string::npos) throw;
@@ -156,49 +160,81 @@ class ModelReader {
     }
   }
 
+  /// Drop the free bodies from an index on if nothing can touch them.
+  void drop_without_shapes(std::size_t bodies, std::size_t joints) {
+    const auto first = found_.free_bodies.begin() + static_cast<std::ptrdiff_t>(bodies);
+    if (std::any_of(first, found_.free_bodies.end(),
+                    [](const FreeBody& body) { return !body.shapes.empty(); })) {
+      return;
+    }
+    found_.free_bodies.resize(bodies);
+    found_.free_joints.resize(joints);
+  }
+
   static Placement read_own_pose(const Given& given) {
     const Element* pose = given.model->FirstChildElement("pose");
     return pose ? read_placement(*given.xml, *pose) : Placement();
   }
 
-  bool is_true(const Element& e) const {
-    const std::string text = lower(xml_.text(e));
-    return text == "true" || text == "1";
-  }
-
   /// Read a model and what is nested in it.
   /// \param written  pose in the world as the model has it
   /// \param X_WM  pose in the world without a saved state of this model
-  void read_model(const Given& given, const std::string& name, const Placement& written,
-                  Placement X_WM, bool is_parent_static, const SavedModel& saved) {
+  /// Returns the links that move.
+  std::vector<JointedLink> read_model(const Given& given, const std::string& name,
+                                      const Placement& written, Placement X_WM,
+                                      bool is_parent_static, const SavedModel& saved) {
     const Xml& xml = *given.xml;
     const Element& model = *given.model;
     if (++count_ > most_models) {
       xml.fail(model, "the world has more than 100000 models. Use a smaller world.");
     }
     const Element* fixed = overriding(given, "static");
-    const bool is_static = fixed ? is_true(*fixed) : is_parent_static;
+    const bool is_static = fixed ? is_true(xml, fixed) : is_parent_static;
     const SdfFrames frames(xml, model, !is_at_most_sdf(xml, model, 6));
     if (saved.pose_W) X_WM = *saved.pose_W;
+    std::vector<JointedLink> free_links;
     bool is_first = true;
     for (const Element* link = xml.child(model, "link"); link;
          link = link->NextSiblingElement("link")) {
       const Placement X_ML = frames.find_pose(*link);
       Placement X_WL = X_WM * X_ML;
-      const auto moved = saved.links.find(name_of(*link));
-      if (moved != saved.links.end()) {
-        X_WL = moved->second;
+      const auto state = saved.links.find(name_of(*link));
+      const SavedLink moved = state == saved.links.end() ? SavedLink() : state->second;
+      if (moved.pose_W) {
+        X_WL = *moved.pose_W;
         if (is_first) X_WM = X_WL * X_ML.inverse();
       }
       is_first = false;
-      read_link(given, *link, name, is_static, frames, written * X_ML, X_WL, saved.scale);
+      std::vector<Obstacle> shapes =
+          read_link(xml, *link, name, is_static, frames, written * X_ML, X_WL, saved.scale);
+      if (is_static) {
+        found_.obstacles.insert(found_.obstacles.end(), shapes.begin(), shapes.end());
+        continue;
+      }
+      FreeBody body = read_free_body(xml, *link);
+      body.model = name;
+      body.position_W = X_WL.position;
+      body.orientation_W = X_WL.rotation;
+      body.linear_velocity_W = moved.linear_velocity_W;
+      body.angular_velocity_W = moved.angular_velocity_W;
+      const Element* own = xml.child(*link, "self_collide");
+      body.collides_own = is_true(xml, own ? own : xml.child(model, "self_collide"));
+      body.may_sleep &= !xml.child(model, "joint");
+      body.shapes = std::move(shapes);
+      free_links.push_back({body.name, found_.free_bodies.size(), X_ML});
+      found_.free_bodies.push_back(std::move(body));
     }
     for (const Element* e = model.FirstChildElement(); e; e = e->NextSiblingElement()) {
       const std::string kind = e->Name();
       const auto nest = [&](const Given& nested, const std::string& inner, const Placement& pose) {
         const auto state = saved.models.find(inner);
-        read_model(nested, name + "::" + inner, written * pose, X_WM * pose, is_static,
-                   state == saved.models.end() ? SavedModel() : state->second);
+        for (JointedLink link :
+             read_model(nested, name + "::" + inner, written * pose, X_WM * pose, is_static,
+                        state == saved.models.end() ? SavedModel() : state->second)) {
+          link.name = inner + "::" + link.name;
+          link.X_ML = pose * link.X_ML;
+          free_links.push_back(link);
+        }
       };
       if (kind == "model") {
         nest({&xml, e}, name_of(*e), frames.find_pose(*e));
@@ -210,39 +246,46 @@ class ModelReader {
         });
       } else if (kind == "plugin") {
         skip_plugin(xml, *e);
-      } else if (kind != "link" && !still_elements.count(kind)) {
+      } else if (kind != "link" && !known_elements.count(kind)) {
         xml.ignored_elements().add_harmless("<" + kind + "> in <model>", xml.where(*e));
       }
     }
-    if (!given.include) return;
+    if (!is_static && !free_links.empty()) read_joints(xml, model, name, free_links, frames, X_WM);
+    if (!given.include) return free_links;
     for (const Element* e = given.include->FirstChildElement("plugin"); e;
          e = e->NextSiblingElement("plugin")) {
       skip_plugin(xml_, *e);
     }
+    return free_links;
   }
 
-  void read_link(const Given& given, const Element& link, const std::string& model, bool is_static,
-                 const SdfFrames& frames, const Placement& written, const Placement& X_WL,
-                 const Vector3d& scale) {
-    const Xml& xml = *given.xml;
+  void read_joints(const Xml& xml, const Element& model, const std::string& name,
+                   const std::vector<JointedLink>& links, const SdfFrames& frames,
+                   const Placement& X_WM) {
+    for (const Element* e = xml.child(model, "joint"); e; e = e->NextSiblingElement("joint")) {
+      FreeJoint joint = read_free_joint(xml, *e, links, frames, X_WM);
+      joint.name = name + "::" + joint.name;
+      found_.free_joints.push_back(std::move(joint));
+    }
+  }
+
+  /// Return the shapes of a link that move with it, or all if it stands still.
+  std::vector<Obstacle> read_link(const Xml& xml, const Element& link, const std::string& model,
+                                  bool is_static, const SdfFrames& frames, const Placement& written,
+                                  const Placement& X_WL, const Vector3d& scale) {
+    std::vector<Obstacle> shapes;
     for (const Element* e = link.FirstChildElement(); e; e = e->NextSiblingElement()) {
       const std::string kind = e->Name();
       if (kind != "collision") {
-        if (!still_link_elements.count(kind)) {
+        if (!known_link_elements.count(kind)) {
           xml.ignored_elements().add_harmless("<" + kind + "> in <link>", xml.where(*e));
         }
         continue;
       }
-      std::optional<Obstacle> shape = read_obstacle(xml, *e, scale);
+      std::optional<Obstacle> shape = read_obstacle(xml, *e, scale, is_static, meshes_);
       if (!shape) continue;
       // A plane stands still in a free model, and where <pose> puts it, whatever the state says.
-      const bool is_plane = shape->kind == ObstacleKind::plane;
-      if (!is_static && !is_plane) {
-        xml_.fail(given.include ? *given.include : *given.model,
-                  "the model '" + model +
-                      "' is not static, but free bodies are not supported. Write "
-                      "<static>true</static> if it stands still.");
-      }
+      const bool is_plane = shape->kind == ShapeKind::plane;
       const Element* pose = e->FirstChildElement("pose");
       const Placement own = frames.find_pose(*e);
       const bool is_in_link =
@@ -254,11 +297,13 @@ class ModelReader {
       shape->orientation_W = pose_W.rotation;
       shape->model = model;
       shape->name = name_of(link) + "::" + name_of(*e);
-      found_.obstacles.push_back(*shape);
+      (is_plane && !is_static ? found_.obstacles : shapes).push_back(*shape);
     }
+    return shapes;
   }
 
   const Xml& xml_;
+  EmbeddedMeshes meshes_{xml_};
   const Element& world_;
   SavedState saved_;
   SdfFrames world_frames_;

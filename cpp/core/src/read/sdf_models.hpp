@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/plugin/free_body.hpp"
 #include "quadcore/plugin/obstacle.hpp"
 #include "sdf_pose.hpp"
 #include "xml.hpp"
@@ -11,9 +12,11 @@ namespace quadcore {
 
 /// The models of a world.
 struct WorldModels {
-  std::vector<Obstacle> obstacles;   ///< in the order of the file
-  std::vector<std::string> ignored;  ///< models that the user ignores, or URIs
-  double start_time = 0;             ///< time at which a saved world starts [s]
+  std::vector<Obstacle> obstacles;     ///< in the order of the file
+  std::vector<FreeBody> free_bodies;   ///< likewise
+  std::vector<FreeJoint> free_joints;  ///< likewise
+  std::vector<std::string> ignored;    ///< models that the user ignores, or URIs
+  double start_time = 0;               ///< time at which a saved world starts [s]
 };
 
 /// Read the models and included models of a world as Gazebo 11 does. Models that nothing feels are

@@ -2,22 +2,16 @@
 
 #include <cmath>
 
+#include "extruded_polyline.hpp"
 #include "quadcore/text.hpp"
+#include "sdf_values.hpp"
 
 namespace quadcore {
 namespace {
 
 using Element = Xml::Element;
 
-const Element* descend(const Element* e, std::initializer_list<const char*> names) {
-  for (const char* name : names) e = e ? e->FirstChildElement(name) : nullptr;
-  return e;
-}
-
-double number_or(const Xml& xml, const Element* parent, const char* name, double fallback) {
-  const Element* e = descend(parent, {name});
-  return e && !xml.text(*e).empty() ? xml.number_in_text(*e) : fallback;
-}
+constexpr double no_bounce = 1e5;  ///< default of the speed from which shapes bounce [m/s]
 
 /// Return a length, which must be positive.
 double length_or(const Xml& xml, const Element& shape, const char* name, double fallback) {
@@ -36,9 +30,9 @@ double coefficient_or(const Xml& xml, const Element* parent, const char* name, d
   xml.fail(*e, "<" + std::string(name) + "> is '" + text + "'. Write a number >= 0.");
 }
 
-/// Read what a static shape's surface contributes to a contact. Bounce needs both shapes to have
-/// it, and a static body has no say in max_vel and min_depth.
-Surface read_static_surface(const Xml& xml, const Element& collision) {
+/// Read what a shape's surface contributes to a contact. A static body has no say in max_vel and
+/// min_depth.
+Surface read_surface(const Xml& xml, const Element& collision, bool is_static) {
   Surface surface;
   const Element* friction = descend(&collision, {"surface", "friction", "ode"});
   surface.mu1 = coefficient_or(xml, friction, "mu", surface.mu1);
@@ -52,6 +46,10 @@ Surface read_static_surface(const Xml& xml, const Element& collision) {
   surface.kd = coefficient_or(xml, contact, "kd", surface.kd);
   if (surface.kp == 0 && surface.kd == 0) {
     xml.fail(*contact, "<kp> and <kd> are both 0. Write a positive number for one of them.");
+  }
+  if (!is_static) {
+    surface.max_vel = coefficient_or(xml, contact, "max_vel", surface.max_vel);
+    surface.min_depth = coefficient_or(xml, contact, "min_depth", surface.min_depth);
   }
   const double points = number_or(xml, &collision, "max_contacts", surface.max_contacts);
   surface.max_contacts = static_cast<int>(std::min(std::max(points, 0.0), 1e6));
@@ -68,14 +66,60 @@ void refuse_torsional_friction(const Xml& xml, const Element& collision) {
   xml.fail(*torsional, "<torsional> is not supported. Remove it." + suggest_ignoring("torsional"));
 }
 
-bool is_true(const Xml& xml, const Element* e) {
-  return e && (xml.text(*e) == "1" || xml.text(*e) == "true");
+/// Set kind and extent of a shape with triangles.
+void measure_mesh(Obstacle& shape) {
+  shape.kind = ShapeKind::mesh;
+  Vector3d least = shape.mesh->vertices.front().cast<double>(), most = least;
+  for (const Eigen::Vector3f& vertex : shape.mesh->vertices) {
+    least = least.cwiseMin(vertex.cast<double>());
+    most = most.cwiseMax(vertex.cast<double>());
+  }
+  shape.size = most - least;
+  shape.center = (least + most) / 2;
+}
+
+void read_mesh(const Xml& xml, const Element& mesh, const Vector3d& scale, EmbeddedMeshes& meshes,
+               Obstacle& shape) {
+  const Element* given = descend(&mesh, {"scale"});
+  Vector3d own = Vector3d::Ones();
+  if (given && !xml.text(*given).empty()) own = xml.vector_in_text(*given);
+  if (!(own.cwiseAbs().minCoeff() > 0)) xml.fail(*given, "<scale> is 0. Correct it.");
+  shape.mesh = meshes.find(mesh, own.cwiseProduct(scale));
+  if (!shape.mesh) {
+    xml.fail(mesh, "the mesh '" + mesh_uri(mesh) +
+                       "' is not found. Add the folder that contains its model to "
+                       "GAZEBO_MODEL_PATH.");
+  }
+  measure_mesh(shape);
+}
+
+/// Read a closed polygon that is extruded along z.
+void read_polyline(const Xml& xml, const Element& polyline, const Vector3d& scale,
+                   Obstacle& shape) {
+  if (const Element* second = polyline.NextSiblingElement("polyline")) {
+    xml.fail(*second, "a second <polyline>, which cuts a hole, is not supported. Use a mesh.");
+  }
+  std::vector<Eigen::Vector2d> points;
+  for (const Element* e = polyline.FirstChildElement("point"); e;
+       e = e->NextSiblingElement("point")) {
+    const std::vector<std::string> words = split(xml.text(*e));
+    const auto x = words.size() == 2 ? parse_number(words[0]) : std::nullopt;
+    const auto y = words.size() == 2 ? parse_number(words[1]) : std::nullopt;
+    if (!x || !y) xml.fail(*e, "<point> is '" + xml.text(*e) + "'. Write two numbers.");
+    points.emplace_back(*x * scale.x(), *y * scale.y());
+  }
+  const double height = length_or(xml, polyline, "height", 1) * scale.z();
+  std::optional<TriangleMesh> mesh = extrude_polyline(std::move(points), height);
+  if (!mesh) xml.fail(polyline, "<polyline> crosses itself or has no area. Correct its points.");
+  shape.mesh = std::make_shared<const TriangleMesh>(std::move(*mesh));
+  measure_mesh(shape);
 }
 
 }  // namespace
 
 std::optional<Obstacle> read_obstacle(const Xml& xml, const Element& collision,
-                                      const Vector3d& scale) {
+                                      const Vector3d& scale, bool is_static,
+                                      EmbeddedMeshes& meshes) {
   const Element* geometry = descend(&collision, {"geometry"});
   const Element* kind = geometry ? geometry->FirstChildElement() : nullptr;
   if (!kind || kind->Name() == std::string("empty")) return {};
@@ -88,7 +132,7 @@ std::optional<Obstacle> read_obstacle(const Xml& xml, const Element& collision,
   shape.where = xml.where(*kind);
   const std::string name = kind->Name();
   if (name == "box") {
-    shape.kind = ObstacleKind::box;
+    shape.kind = ShapeKind::box;
     const Element* size = descend(kind, {"size"});
     if (size && !xml.text(*size).empty()) shape.size = xml.vector_in_text(*size);
     if (!(shape.size.minCoeff() > 0)) {
@@ -96,28 +140,35 @@ std::optional<Obstacle> read_obstacle(const Xml& xml, const Element& collision,
     }
     shape.size = shape.size.cwiseProduct(scale);
   } else if (name == "sphere") {
-    shape.kind = ObstacleKind::sphere;
+    shape.kind = ShapeKind::sphere;
     shape.size = {length_or(xml, *kind, "radius", 1) * scale.maxCoeff(), 0, 0};
   } else if (name == "cylinder") {
-    shape.kind = ObstacleKind::cylinder;
+    shape.kind = ShapeKind::cylinder;
     shape.size = {length_or(xml, *kind, "radius", 1) * std::max(scale.x(), scale.y()),
                   length_or(xml, *kind, "length", 1) * scale.z(), 0};
   } else if (name == "plane") {
-    shape.kind = ObstacleKind::plane;
+    shape.kind = ShapeKind::plane;
     shape.size = Vector3d::UnitZ();
     const Element* normal = descend(kind, {"normal"});
     if (normal && !xml.text(*normal).empty()) shape.size = xml.vector_in_text(*normal);
     if (!(shape.size.norm() > 0)) {
       xml.fail(*normal, "<normal> is zero. Write a direction, such as 0 0 1.");
     }
+  } else if (name == "mesh") {
+    read_mesh(xml, *kind, scale, meshes, shape);
+  } else if (name == "polyline") {
+    read_polyline(xml, *kind, scale, shape);
   } else {
     xml.fail(*kind, "an obstacle of the shape <" + name +
-                        "> is not supported. Use box, sphere, cylinder or plane.");
+                        "> is not supported. Use box, sphere, cylinder, plane, polyline or mesh.");
   }
-  shape.surface = read_static_surface(xml, collision);
+  shape.surface = read_surface(xml, collision, is_static);
   const Element* friction = descend(&collision, {"surface", "friction", "ode"});
   shape.slip1 = coefficient_or(xml, friction, "slip1", 0);
   shape.slip2 = coefficient_or(xml, friction, "slip2", 0);
+  const Element* bounce = descend(&collision, {"surface", "bounce"});
+  shape.restitution = coefficient_or(xml, bounce, "restitution_coefficient", 0);
+  shape.restitution_speed = coefficient_or(xml, bounce, "threshold", no_bounce);
   refuse_torsional_friction(xml, collision);
   return shape;
 }

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "embedded_meshes.hpp"
 #include "sdf_models.hpp"
 
 namespace quadcore {
@@ -9,7 +10,9 @@ namespace quadcore {
 /// Read a `<collision>` without its pose and names. Empty if nothing collides with it. Throws
 /// InputError for a shape that is not supported.
 /// \param scale  scale of the model's shapes
+/// \param meshes  triangles of the collision's document
 std::optional<Obstacle> read_obstacle(const Xml& xml, const Xml::Element& collision,
-                                      const Vector3d& scale);
+                                      const Vector3d& scale, bool is_static,
+                                      EmbeddedMeshes& meshes);
 
 }  // namespace quadcore

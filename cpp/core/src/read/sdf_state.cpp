@@ -1,5 +1,6 @@
 #include "sdf_state.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "quadcore/text.hpp"
@@ -14,6 +15,31 @@ std::string name_of_saved(const Element& e) {
   return name ? name : "";
 }
 
+/// Return the six numbers in an element, or zeros if it is empty.
+std::array<Vector3d, 2> read_six(const Xml& xml, const Element& e, const std::string& text) {
+  std::array<Vector3d, 2> halves = {Vector3d::Zero(), Vector3d::Zero()};
+  const std::vector<std::string> words = split(text);
+  if (words.empty()) return halves;
+  for (std::size_t i = 0; i < 6 && words.size() == 6; ++i) {
+    const auto number = parse_number(words[i]);
+    if (!number || std::abs(*number) > 1e9) break;
+    halves[i / 3][static_cast<Eigen::Index>(i % 3)] = *number;
+    if (i == 5) return halves;
+  }
+  xml.fail(e, "<" + std::string(e.Name()) + "> is '" + text + "'. Write six finite numbers.");
+}
+
+SavedLink read_saved_link(const Xml& xml, const Element& saved) {
+  SavedLink link;
+  if (const Element* pose = xml.child(saved, "pose")) link.pose_W = read_placement(xml, *pose);
+  if (const Element* velocity = xml.child(saved, "velocity")) {
+    const auto halves = read_six(xml, *velocity, xml.text(*velocity));
+    link.linear_velocity_W = halves[0];
+    link.angular_velocity_W = halves[1];
+  }
+  return link;
+}
+
 SavedModel read_saved_model(const Xml& xml, const Element& saved) {
   SavedModel model;
   if (const Element* pose = xml.child(saved, "pose")) model.pose_W = read_placement(xml, *pose);
@@ -23,8 +49,7 @@ SavedModel read_saved_model(const Xml& xml, const Element& saved) {
     if (!(model.scale.minCoeff() > 0)) xml.fail(*scale, "<scale> is not positive. Correct it.");
   }
   for (const Element* e = xml.child(saved, "link"); e; e = e->NextSiblingElement("link")) {
-    const Element* pose = xml.child(*e, "pose");
-    if (pose) model.links.emplace(name_of_saved(*e), read_placement(xml, *pose));
+    model.links.emplace(name_of_saved(*e), read_saved_link(xml, *e));
   }
   for (const Element* e = xml.child(saved, "model"); e; e = e->NextSiblingElement("model")) {
     model.models.emplace(name_of_saved(*e), read_saved_model(xml, *e));
@@ -49,16 +74,8 @@ double read_time(const Xml& xml, const Element& time) {
 
 Placement read_placement(const Xml& xml, const Element& pose) {
   const std::string text = xml.text(pose, {"relative_to"});
-  const std::vector<std::string> words = split(text);
-  if (words.empty()) return {};
-  Vector3d halves[2];
-  for (std::size_t i = 0; i < 6 && words.size() == 6; ++i) {
-    const auto number = parse_number(words[i]);
-    if (!number || std::abs(*number) > 1e9) break;
-    halves[i / 3][static_cast<Eigen::Index>(i % 3)] = *number;
-    if (i == 5) return {halves[0], quaternion_from_rpy(halves[1])};
-  }
-  xml.fail(pose, "<pose> is '" + text + "'. Write six finite numbers.");
+  const auto halves = read_six(xml, pose, text);
+  return {halves[0], quaternion_from_rpy(halves[1])};
 }
 
 SavedState read_saved_state(const Xml& xml, const Element& world) {

@@ -11,11 +11,18 @@
 
 namespace quadcore {
 
+/// What the `<state>` of a saved world contains about a link.
+struct SavedLink {
+  std::optional<Placement> pose_W;
+  Vector3d linear_velocity_W = Vector3d::Zero();   ///< m/s
+  Vector3d angular_velocity_W = Vector3d::Zero();  ///< rad/s
+};
+
 /// What the `<state>` of a saved world contains about a model. It overrides the model.
 struct SavedModel {
   std::optional<Placement> pose_W;         ///< pose of the model
   Vector3d scale = Vector3d::Ones();       ///< of its shapes
-  std::map<std::string, Placement> links;  ///< poses of its links in the world
+  std::map<std::string, SavedLink> links;  ///< by name
   std::map<std::string, SavedModel> models;
 };
 

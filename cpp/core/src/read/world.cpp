@@ -43,7 +43,7 @@ std::set<std::string> attributes_of(const std::string& element) {
 
 /// Return whether an obstacle is the ground: a level plane at z = 0.
 bool is_ground(const Obstacle& obstacle) {
-  return obstacle.kind == ObstacleKind::plane && obstacle.position_W.z() == 0 &&
+  return obstacle.kind == ShapeKind::plane && obstacle.position_W.z() == 0 &&
          obstacle.size.normalized() == Vector3d::UnitZ() && obstacle.slip1 == 0 &&
          obstacle.slip2 == 0;
 }
@@ -261,8 +261,10 @@ class WorldReader {
               [this](const Element& e) { skip_plugin(xml_, e); }),
         other(
             "model",
-            "a static model of boxes, cylinders, spheres and planes; the second of two models with "
-            "one name is ignored; a model without collision shapes is ignored",
+            "a model of boxes, cylinders, spheres, planes, meshes and polylines that is static or "
+            "moves freely or on "
+            "joints; the second of two models with one name is ignored; a model without collision "
+            "shapes is ignored",
             ignored),
         other("physics", "attribute `type`, if given, must be `ode`; also written `physics:ode`",
               physics),
@@ -373,6 +375,8 @@ class WorldReader {
     const WorldModels models = read_models(xml_, world);
     world_.start_time = models.start_time;
     world_.ignored_models = models.ignored;
+    world_.free_bodies = models.free_bodies;
+    world_.free_joints = models.free_joints;
     for (const Obstacle& obstacle : models.obstacles) {
       if (world_.ground_plane || !is_ground(obstacle)) {
         world_.obstacles.push_back(obstacle);

@@ -10,6 +10,9 @@
 namespace quadcore {
 namespace {
 
+/// Bytes of a world with the models and meshes that it includes.
+constexpr std::size_t largest_with_meshes = 500000000;
+
 std::string list_accepted(const Xml::Element& element, const std::vector<std::string>& names) {
   return names.empty() ? " Remove it."
                        : " <" + std::string(element.Name()) + "> accepts " + joined(names) + ".";
@@ -17,9 +20,13 @@ std::string list_accepted(const Xml::Element& element, const std::vector<std::st
 
 }  // namespace
 
-Xml::Xml(const Document& document, const std::string& root_name, IgnoredElements& ignored_elements)
+Xml::Xml(const Document& document, const std::string& root_name, IgnoredElements& ignored_elements,
+         const std::string& old_name)
     : document_(document), ignored_elements_(ignored_elements) {
-  check_xml_limits(document, root_name == "sdf" ? Document::largest_world : Document::largest);
+  const bool is_world = root_name == "sdf", has_embedded = !document.lines.empty();
+  check_xml_limits(document, is_world && has_embedded ? largest_with_meshes
+                             : is_world               ? Document::largest_world
+                                                      : Document::largest);
   if (trimmed(document.text).empty()) {
     throw InputError(document.at(1) + ": the file is empty. Write a <" + root_name + "> element.");
   }
@@ -37,8 +44,8 @@ Xml::Xml(const Document& document, const std::string& root_name, IgnoredElements
                        ": <!DOCTYPE> and entities are not supported. Remove them.");
     }
   }
-  if (!xml_.RootElement() || root_name != xml_.RootElement()->Name()) {
-    const auto* root = xml_.RootElement();
+  const auto* root = xml_.RootElement();
+  if (!root || (root_name != root->Name() && old_name != root->Name())) {
     throw InputError(document.at(root ? root->GetLineNum() : 1) + ": the outermost element is " +
                      (root ? "<" + std::string(root->Name()) + ">" : std::string("missing")) +
                      ". Use <" + root_name + ">.");

@@ -19,7 +19,9 @@ class Xml {
   using Element = tinyxml2::XMLElement;
 
   /// Parse the document and check the name of its root element.
-  Xml(const Document& document, const std::string& root_name, IgnoredElements& ignored_elements);
+  /// \param old_name  another accepted name, or ""
+  Xml(const Document& document, const std::string& root_name, IgnoredElements& ignored_elements,
+      const std::string& old_name = "");
 
   const Element& root() const { return *xml_.RootElement(); }
   std::string where(const Element& element) const { return document_.at(element.GetLineNum()); }

@@ -1,6 +1,7 @@
 #include "quadcore/clearance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace quadcore {
@@ -11,14 +12,9 @@ using Convex = Clearance::Convex;
 constexpr int most_projections = 1000;
 constexpr double least_progress = 1e-9;  // m
 
-double outer_radius_of(ShapeKind kind, const Vector3d& size) {
-  if (kind == ShapeKind::box) return size.norm() / 2;
-  return kind == ShapeKind::cylinder ? Eigen::Vector2d(size.x(), size.y() / 2).norm() : size.x();
-}
-
 Convex make_convex(ShapeKind kind, const Vector3d& size, const Vector3d& position,
                    const Quaterniond& rotation) {
-  return {kind, size, position, rotation, outer_radius_of(kind, size)};
+  return {kind, size, position, rotation, outer_radius(kind, size)};
 }
 
 /// Return the point of a shape that is nearest to a point, both in the same axes as the shape.
@@ -40,19 +36,25 @@ Vector3d project(const Convex& shape, const Vector3d& point) {
   return shape.position + shape.rotation * p;
 }
 
-/// Return the distance of two convex shapes by alternating projections from a point, which converge
-/// to the nearest points of two convex sets (Cheney, Goldstein 1959). Between faces that are nearly
-/// parallel they converge slowly; the distance is then an upper bound.
-double distance_from(Vector3d p, const Convex& a, const Convex& b) {
+/// Return the distance of a convex shape from another convex set by alternating projections from a
+/// point, which converge to the nearest points of two convex sets (Cheney, Goldstein 1959). Between
+/// faces that are nearly parallel they converge slowly; the distance is then an upper bound.
+/// \param project_b  returns the point of the other set that is nearest to a point
+template <class Projection>
+double distance_from(Vector3d p, const Convex& a, const Projection& project_b) {
   double distance = INFINITY;
   for (int i = 0; i < most_projections; ++i) {
-    const Vector3d q = project(b, p);
+    const Vector3d q = project_b(p);
     p = project(a, q);
     const double shorter = (p - q).norm();
     if (distance - shorter < least_progress) return shorter;
     distance = shorter;
   }
   return distance;
+}
+
+double distance_from(const Vector3d& p, const Convex& a, const Convex& b) {
+  return distance_from(p, a, [&](const Vector3d& from) { return project(b, from); });
 }
 
 /// Return points of a shape's surface that lie furthest out: the corners of a box, and eight points
@@ -87,6 +89,24 @@ double distance_between(const Convex& a, const Convex& b) {
   for (const Vector3d& p : outer_points(a)) distance = std::min(distance, distance_from(p, a, b));
   for (const Vector3d& p : outer_points(b)) distance = std::min(distance, distance_from(p, b, a));
   return distance;
+}
+
+/// Return the distance of a convex shape from a mesh, if it is shorter than a known one.
+double distance_from_mesh(const Convex& shape, const Obstacle& obstacle, double known) {
+  if (least_distance_to(obstacle, shape.position) - shape.radius >= known) return known;
+  const std::vector<Vector3d> points = outer_points(shape);
+  for (const TriangleMesh::Triangle& triangle : obstacle.mesh->triangles) {
+    std::array<Vector3d, 3> corners_W = corners_of(*obstacle.mesh, triangle);
+    for (Vector3d& p : corners_W) p = obstacle.position_W + obstacle.orientation_W * p;
+    const auto project_onto = [&](const Vector3d& p) {
+      return project_onto_triangle(corners_W, p);
+    };
+    const Vector3d& center = shape.position;
+    if ((project_onto(center) - center).norm() - shape.radius >= known) continue;
+    known = std::min(known, distance_from(center, shape, project_onto));
+    for (const Vector3d& p : points) known = std::min(known, distance_from(p, shape, project_onto));
+  }
+  return known;
 }
 
 /// Return the extent of a shape along a direction, from its centre [m].
@@ -134,10 +154,7 @@ Clearance::Clearance(const Model& model, const World& world) : given_(world.obst
     }
   }
   for (const Obstacle& o : given_) {
-    const ShapeKind kind = o.kind == ObstacleKind::box        ? ShapeKind::box
-                           : o.kind == ObstacleKind::cylinder ? ShapeKind::cylinder
-                                                              : ShapeKind::sphere;
-    obstacles_W_.push_back(make_convex(kind, o.size, o.position_W, o.orientation_W));
+    obstacles_W_.push_back(make_convex(o.kind, o.size, o.position_W, o.orientation_W));
   }
 }
 
@@ -148,9 +165,11 @@ Clearance::Nearest Clearance::find(const Vector3d& p_WF, const Quaterniond& R_WF
     shape.rotation = R_WF * shape.rotation;
     for (std::size_t i = 0; i < given_.size(); ++i) {
       double distance = 0;
-      if (given_[i].kind == ObstacleKind::plane) {
+      if (given_[i].kind == ShapeKind::plane) {
         const Vector3d normal = given_[i].size.normalized();
         distance = std::max(0.0, distance_to(given_[i], shape.position) - extent(shape, normal));
+      } else if (given_[i].kind == ShapeKind::mesh) {
+        distance = distance_from_mesh(shape, given_[i], nearest.distance);
       } else {
         const Convex& obstacle = obstacles_W_[i];
         const double bound =

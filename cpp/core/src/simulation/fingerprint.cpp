@@ -67,6 +67,45 @@ Facts facts_of(const Model& model) {
   return facts;
 }
 
+void add_obstacle(Facts& facts, const Obstacle& obstacle) {
+  const std::string who = "obstacle " + obstacle.model + "::" + obstacle.name;
+  add(facts, who + " kind", {static_cast<double>(obstacle.kind)});
+  add(facts, who + " size", numbers(obstacle.size));
+  add(facts, who + " position", numbers(obstacle.position_W));
+  add(facts, who + " orientation", numbers(obstacle.orientation_W.toRotationMatrix()));
+  add_surface(facts, who, obstacle.surface);
+  add(facts, who + " slip1, slip2", {obstacle.slip1, obstacle.slip2});
+  add(facts, who + " restitution", {obstacle.restitution, obstacle.restitution_speed});
+}
+
+void add_free_body(Facts& facts, const FreeBody& body) {
+  const std::string who = "free body " + body.model + "::" + body.name;
+  add(facts, who + " mass", {body.inertial.mass});
+  add(facts, who + " centre of mass", numbers(body.inertial.pose.xyz));
+  add(facts, who + " inertia", numbers(body.inertial.inertia_in_link_axes()));
+  add(facts, who + " position", numbers(body.position_W));
+  add(facts, who + " orientation", numbers(body.orientation_W.toRotationMatrix()));
+  add(facts, who + " velocity", numbers(body.linear_velocity_W));
+  add(facts, who + " angular velocity", numbers(body.angular_velocity_W));
+  add(facts, who + " settings",
+      {body.gravity ? 1.0 : 0.0, body.may_sleep ? 1.0 : 0.0, body.collides_own ? 1.0 : 0.0,
+       body.linear_decay, body.angular_decay});
+  for (const Obstacle& shape : body.shapes) add_obstacle(facts, shape);
+}
+
+void add_free_joint(Facts& facts, const FreeJoint& joint) {
+  const std::string who = "free joint " + joint.name;
+  add(facts, who + " kind", {static_cast<double>(joint.kind)});
+  add(facts, who + " links", {static_cast<double>(joint.child), static_cast<double>(joint.parent)});
+  add(facts, who + " anchors", numbers(joint.anchor_C));
+  add(facts, who + " anchor in the parent", numbers(joint.anchor_P));
+  add(facts, who + " axis", numbers(joint.axis_C));
+  add(facts, who + " axis in the parent", numbers(joint.axis_P));
+  add(facts, who + " zero", numbers(joint.q_PC_at_zero.toRotationMatrix()));
+  add(facts, who + " limits", {joint.lower, joint.upper});
+  add(facts, who + " loads", {joint.damping, joint.friction, joint.stiffness, joint.rest_position});
+}
+
 Facts facts_of(const World& world) {
   Facts facts;
   add(facts, "max_step_size", {world.max_step_size});
@@ -78,15 +117,9 @@ Facts facts_of(const World& world) {
   add(facts, "ground plane", {world.ground_plane ? 1.0 : 0.0});
   if (world.ground_plane) add_surface(facts, "ground plane", world.ground);
   add(facts, "max_contacts", {static_cast<double>(world.max_contacts)});
-  for (const Obstacle& obstacle : world.obstacles) {
-    const std::string who = "obstacle " + obstacle.model + "::" + obstacle.name;
-    add(facts, who + " kind", {static_cast<double>(obstacle.kind)});
-    add(facts, who + " size", numbers(obstacle.size));
-    add(facts, who + " position", numbers(obstacle.position_W));
-    add(facts, who + " orientation", numbers(obstacle.orientation_W.toRotationMatrix()));
-    add_surface(facts, who, obstacle.surface);
-    add(facts, who + " slip1, slip2", {obstacle.slip1, obstacle.slip2});
-  }
+  for (const Obstacle& obstacle : world.obstacles) add_obstacle(facts, obstacle);
+  for (const FreeBody& body : world.free_bodies) add_free_body(facts, body);
+  for (const FreeJoint& joint : world.free_joints) add_free_joint(facts, joint);
   facts.push_back({"solver", {}, world.solver_type});
   add(facts, "iters", {static_cast<double>(world.solver_iterations)});
   add(facts, "sor", {world.solver_sor});

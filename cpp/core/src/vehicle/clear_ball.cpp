@@ -31,7 +31,7 @@ double ClearBall::nearest(const Vector3d& p_W) const {
     const Obstacle& obstacle = obstacles_[i];
     const double bound = nearest + outer_radii_[i];
     if (bound >= 0 && !((p_W - obstacle.position_W).squaredNorm() > bound * bound)) {
-      nearest = std::min(nearest, distance_to(obstacle, p_W));
+      nearest = std::min(nearest, least_distance_to(obstacle, p_W));
     }
   }
   return nearest;

@@ -16,7 +16,7 @@ class ClearBall {
   bool is_empty() const { return obstacles_.empty(); }
   /// Return whether a ball [m] touches no obstacle. The answer does not depend on earlier calls.
   bool is_free(const Vector3d& center_W, double radius);
-  /// Return the signed distance of the nearest obstacle from a point [m]; infinite without
+  /// Return the minimum of least_distance_to() of all obstacles from a point [m]; infinite without
   /// obstacles.
   double nearest(const Vector3d& p_W) const;
 

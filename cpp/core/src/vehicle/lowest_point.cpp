@@ -19,10 +19,9 @@ double reach_down(const Collision& shape, const Matrix3d& R_WS) {
     }
     case ShapeKind::sphere:
       return shape.size.x();
-    case ShapeKind::mesh:
-      break;
+    default:
+      return 0;
   }
-  return 0;
 }
 
 double lowest_point(const Model& model, const Kinematics& k) {

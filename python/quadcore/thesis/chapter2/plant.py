@@ -83,8 +83,8 @@ class _Motion:
 def check(simulation: Simulation) -> None:
     """Raise `InputError` if a force acts on the vehicle that chapter 2 does not have."""
     world = simulation.world
-    if world.ground_plane or world.obstacles:
-        solid = "a ground plane" if world.ground_plane else "obstacles"
+    if world.ground_plane or world.obstacles or world.free_bodies:
+        solid = "a ground plane" if world.ground_plane else "obstacles or free bodies"
         raise InputError(
             f"engine {LAGRANGE}: the mathematical model has no contact, but the world has {solid}. "
             "Use a world without one, such as empty."

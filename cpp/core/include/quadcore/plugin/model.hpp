@@ -28,8 +28,9 @@ struct Inertial {
   bool is_positive() const;
 };
 
-/// Kind of a collision shape; see Collision for its dimensions.
-enum class ShapeKind { box, cylinder, sphere, mesh };
+/// Kind of a collision shape; see Collision and Obstacle for its dimensions. Only obstacles are
+/// planes.
+enum class ShapeKind { box, cylinder, sphere, mesh, plane };
 
 /// Contact parameters of a shape; the defaults are Gazebo 11's.
 struct Surface {
@@ -54,6 +55,10 @@ struct Collision {
   std::string name = {};  ///< name in the URDF, or ""
   Surface surface = {};   ///< contact parameters
 };
+
+/// Return the distance of a box's, cylinder's or sphere's farthest point from its centre [m]; 0 for
+/// any other shape.
+double outer_radius(ShapeKind kind, const Vector3d& size);
 
 /// Settings of a `<gazebo reference>` that affect the motion of a whole body.
 struct BodyTags {

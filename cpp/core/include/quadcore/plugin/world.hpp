@@ -6,6 +6,7 @@
 
 #include "quadcore/plugin/document.hpp"
 #include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/free_body.hpp"
 #include "quadcore/plugin/ignored_elements.hpp"
 #include "quadcore/plugin/obstacle.hpp"
 #include "quadcore/plugin/spatial.hpp"
@@ -53,8 +54,10 @@ struct World {
   Surface ground = {100, 50};
   int max_contacts = 20;            ///< maximum number of points at which a pair of shapes touches
   std::vector<Obstacle> obstacles;  ///< all others that stand still, in the order of the file
-  Vector3d wind_W{0, 0, 0};         ///< velocity of the air [m/s]
-  Atmosphere atmosphere;            ///< air at z = 0
+  std::vector<FreeBody> free_bodies;   ///< those that move, in the order of the file
+  std::vector<FreeJoint> free_joints;  ///< joints of the free bodies
+  Vector3d wind_W{0, 0, 0};            ///< velocity of the air [m/s]
+  Atmosphere atmosphere;               ///< air at z = 0
   Vector3d magnetic_field_W{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< x east, y north, z up [T]
   Origin origin;                                                  ///< position on Earth
   double start_time = 0;                    ///< time at which a saved world starts [s]
