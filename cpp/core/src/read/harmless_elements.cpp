@@ -27,7 +27,7 @@ const char* const pressure = "air pressure";
 const char* const contact = "forces and contacts";
 const char* const score = "score of a task";
 const char* const connection = "connection of topics";
-const char* const picture = "pictures only";
+const char* const picture = "appearance only";
 const char* const successor = "for Gazebo's successor; Gazebo classic ignores it";
 
 }  // namespace

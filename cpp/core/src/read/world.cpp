@@ -263,8 +263,8 @@ class WorldReader {
             "model",
             "a model of boxes, cylinders, spheres, planes, meshes and polylines that is static or "
             "moves freely or on "
-            "joints; the second of two models with one name is ignored; a model without collision "
-            "shapes is ignored",
+            "joints. The second of two models with one name is ignored, and so is a model without "
+            "collision shapes",
             ignored),
         other("physics", "attribute `type`, if given, must be `ode`; also written `physics:ode`",
               physics),
