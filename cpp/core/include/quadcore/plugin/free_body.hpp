@@ -13,10 +13,10 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// A link of a world's model that is not static.
 struct FreeBody {
-  std::string model;  ///< name of its model: MODEL, or MODEL::NESTED
-  std::string name;   ///< name of the link
-  Inertial inertial;
-  Vector3d position_W = Vector3d::Zero();               ///< of the link at the start [m]
+  std::string model;                       ///< name of its model: MODEL, or MODEL::NESTED
+  std::string name;                        ///< name of the link
+  Inertial inertial;                       ///< mass, centre of mass and inertia
+  Vector3d position_W = Vector3d::Zero();  ///< of the link at the start [m]
   Quaterniond orientation_W = Quaterniond::Identity();  ///< of the link at the start
   Vector3d linear_velocity_W = Vector3d::Zero();        ///< of the link at the start [m/s]
   Vector3d angular_velocity_W = Vector3d::Zero();       ///< at the start [rad/s]
@@ -35,6 +35,7 @@ enum class FreeJointKind { fixed, revolute, prismatic, universal, ball };
 /// A joint between two free bodies, or a free body and the world. At position zero the anchors
 /// coincide.
 struct FreeJoint {
+  /// Stands for the world as the parent.
   static constexpr std::size_t world = static_cast<std::size_t>(-1);
 
   std::string name;                                    ///< MODEL::JOINT
@@ -47,7 +48,8 @@ struct FreeJoint {
   /// Axis of a revolute or prismatic joint, and second axis of a universal one, in the child; unit.
   Vector3d axis_C = Vector3d::UnitZ();
   Vector3d axis_P = Vector3d::UnitZ();  ///< the same in the parent, but the first axis; unit
-  double lower = -1e16, upper = 1e16;   ///< limits of the position [rad, m]
+  double lower = -1e16;                 ///< lower limit of the position [rad, m]
+  double upper = 1e16;                  ///< upper limit of the position [rad, m]
   double damping = 0;                   ///< N m s/rad, N s/m
   double friction = 0;                  ///< N m, N
   double stiffness = 0;                 ///< of a spring [N m/rad, N/m]
@@ -56,9 +58,9 @@ struct FreeJoint {
 
 /// Motion of a free body.
 struct FreeBodyState {
-  std::string name;  ///< MODEL::LINK
-  Vector3d position_W;
-  Quaterniond orientation_W;
+  std::string name;             ///< MODEL::LINK
+  Vector3d position_W;          ///< of the link's origin [m]
+  Quaterniond orientation_W;    ///< of the link's axes
   Vector3d linear_velocity_W;   ///< of the link's origin [m/s]
   Vector3d angular_velocity_W;  ///< rad/s
 };

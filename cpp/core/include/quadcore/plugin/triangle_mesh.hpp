@@ -11,10 +11,11 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// Triangles in the order of their file. Gazebo's collider has vertices of single precision.
 struct TriangleMesh {
+  /// Indices of three vertices.
   using Triangle = std::array<std::uint32_t, 3>;
 
   std::vector<Eigen::Vector3f> vertices;  ///< m
-  std::vector<Triangle> triangles;        ///< indices of the vertices
+  std::vector<Triangle> triangles;        ///< the faces
 };
 
 /// Return the corners of a triangle.
