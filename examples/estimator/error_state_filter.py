@@ -72,6 +72,11 @@ class ErrorStateFilter:
         return self._R.as_quat()
 
     @property
+    def covariance(self) -> np.ndarray:
+        """Covariance of the errors of position, velocity and orientation, (9, 9)."""
+        return self._covariance[:9, :9]
+
+    @property
     def deviations(self) -> np.ndarray:
         """Standard deviations of the error state, (15,)."""
         return np.sqrt(np.diag(self._covariance))

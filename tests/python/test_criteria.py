@@ -10,9 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import quadcore as qc
 from quadcore.cli import main
+from quadcore.support.rotation import compute_rotation_vector
 
 OWN = """
 import quadcore as qc
@@ -105,6 +107,85 @@ def test_attitude_and_rates_are_compared_with_the_flat_state():
     row = evaluate(metrics=["attitude"]).table[0]
     assert row["max_position"] < 1e-4
     assert row["max_attitude_error"] == pytest.approx(row["max_yaw"], rel=0.1)
+
+
+ESTIMATES = """
+from types import SimpleNamespace
+import numpy as np
+import quadcore as qc
+
+class Trusts:
+    rate = 500.0
+    estimate = None
+    share = 1.0
+    def reset(self, vehicle):
+        self.law = qc.controllers.geometric()
+        self.law.reset(vehicle)
+    def __call__(self, t, state, reference):
+        if t > 0.1:
+            sizes = self.share * np.repeat([0.01, 0.02, 0.003], 3)
+            self.estimate = SimpleNamespace(
+                position=state.position, linear_velocity=state.linear_velocity,
+                orientation=-state.orientation, covariance=np.diag(sizes**2),
+            )
+        return self.law(t, state, reference)
+
+class OnlyPosition(Trusts):
+    def __call__(self, t, state, reference):
+        self.estimate = SimpleNamespace(position=state.position + [3, 0, 4])
+        return self.law(t, state, reference)
+
+class Wrong(Trusts):
+    def __call__(self, t, state, reference):
+        self.estimate = SimpleNamespace(position=state.position, covariance=np.eye(4))
+        return self.law(t, state, reference)
+
+class Singular(Trusts):
+    share = 0.0
+"""
+NOISE = {
+    "odometry.positionNoise": 0.01,
+    "odometry.linearVelocityNoise": 0.02,
+    "odometry.orientationNoise": 0.003,
+}
+
+
+def test_estimates_are_compared_with_the_truth_at_the_calls():
+    Path("estimates.py").write_text(ESTIMATES)
+    names = ["Trusts", "Trusts:share=2", "OnlyPosition", "Wrong", "Singular"]
+    mine = ["geometric", *(f"estimates.py:{name}" for name in names)]
+    table = evaluate(mine, parameters=NOISE, metrics=["estimate"]).table
+    blind, right, cautious, position, wrong, singular = table
+    # 950 calls with white noise: the deviation of each mean square of n components is
+    # sqrt(2 / 950 / n) of it.
+    for name, size in (("position", 0.01), ("velocity", 0.02), ("attitude", 0.003)):
+        expected = pytest.approx(size * 3**0.5, rel=0.06)
+        assert right[f"rms_estimated_{name}"] == expected
+    assert right["nees"] == pytest.approx(1, abs=0.06)
+    assert cautious["nees"] == pytest.approx(right["nees"] / 4, rel=1e-9)
+    assert np.isnan([blind[name] for name in ("nees", "rms_estimated_position")]).all()
+    assert position["rms_estimated_position"] == pytest.approx(5, abs=0.01)
+    assert np.isnan([position["nees"], position["rms_estimated_attitude"]]).all()
+    assert "its estimate.covariance is" in wrong["failure"] and "(3, 3)" in wrong["failure"]
+    assert "estimate.covariance is not positive definite" in singular["failure"]
+
+
+def test_estimates_are_compared_in_sweeps_and_with_the_attitude_of_scipy():
+    Path("estimates.py").write_text(ESTIMATES)
+    swept = qc.sweep(
+        "estimates.py:Trusts",
+        "circle",
+        {"frame.mass": [1.0, 1.1]},
+        parameters=NOISE,
+        metrics=["estimate"],
+        **FLIGHT,
+    )
+    assert swept.columns["nees"] == pytest.approx([1, 1], abs=0.06)
+    first, second = Rotation.random(2, random_state=1)
+    expected = (first.inv() * second).as_rotvec()
+    for sign in (1, -1):
+        found = compute_rotation_vector(first.as_quat(), sign * second.as_quat())
+        assert found == pytest.approx(expected)
 
 
 def test_own_columns_hold_the_values_of_the_last_call_before_each_row():

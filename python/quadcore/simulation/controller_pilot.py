@@ -12,6 +12,7 @@ from .._core import FlightError, InputError, QuadcoreError
 from ..control import controllers, references
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED, ControllerLike, check_callable
+from ..control.estimate_errors import EstimateErrors
 from ..control.fair_controller import make_sense
 from ..control.inner_loop import SET_POINTS, InnerLoop
 from ..control.keywords import ReferenceName
@@ -63,6 +64,7 @@ class ControllerPilot(ReferencePilot):
         self._inner_loop = InnerLoop() if inner_loop is None else inner_loop
         self._own_columns = OwnColumns(controller)
         self.columns = (*self.columns, *self._own_columns.columns)
+        self._estimate_errors: Optional[EstimateErrors] = None
         self._controller: Any = controller
         self._timed = timed
         self._loop: Optional[_core.ControlLoop] = None
@@ -108,6 +110,16 @@ class ControllerPilot(ReferencePilot):
     def seconds(self) -> np.ndarray:
         """Duration of each call, s; empty unless the calls are timed."""
         return np.empty(0) if self._loop is None else self._loop.seconds
+
+    @property
+    def estimate_errors(self) -> Optional[np.ndarray]:
+        """Result of `EstimateErrors.rows`; None without `note_estimates`."""
+        return None if self._estimate_errors is None else self._estimate_errors.rows
+
+    def note_estimates(self) -> None:
+        """Compare the controller's estimate with the true state at each call from now on."""
+        if not self.is_vectorized:
+            self._estimate_errors = EstimateErrors(self._controller)
 
     @property
     def is_built_in(self) -> bool:
@@ -180,16 +192,20 @@ class ControllerPilot(ReferencePilot):
             inner_loop.leave()
             return speeds
 
-        return self._note_columns(call_vectorized if self.is_vectorized else call, simulation)
+        return self._add_notes(call_vectorized if self.is_vectorized else call, simulation)
 
-    def _note_columns(self, call: Callable[[], Any], simulation: Any) -> Callable[[], Any]:
-        """Note the controller's own columns after each call, if there are any."""
-        if not self._own_columns.columns:
+    def _add_notes(self, call: Callable[[], Any], simulation: Any) -> Callable[[], Any]:
+        """Note the controller's own columns and errors of its estimate after each call, if any."""
+        columns, errors = self._own_columns, self._estimate_errors
+        if not columns.columns and errors is None:
             return call
 
         def call_and_note() -> Any:
             t, speeds = simulation.time, call()
-            self._own_columns.note(t)
+            if columns.columns:
+                columns.note(t)
+            if errors is not None:
+                errors.note(simulation.state)
             return speeds
 
         return call_and_note

@@ -75,6 +75,10 @@ class PluginPilot(ReferencePilot):
     summary = ""
     variation: Optional[Tuple[np.ndarray, np.ndarray]] = None
     seconds: Sequence[float] = ()
+    estimate_errors: Optional[np.ndarray] = None
+
+    def note_estimates(self) -> None:
+        """Do nothing: the estimates of a plugin are unknown."""
 
     def __init__(
         self,

@@ -12,7 +12,7 @@ from ..simulation.log import Log
 from ..support.arguments import shorten
 from ..support.rotation import compute_tilts
 from ..support.user_code import describe_error, find_object
-from . import tracking_errors
+from . import estimation_errors, tracking_errors
 from .grouped_flights import FlightRecord
 from .tracking_metrics import FAILURE_DISTANCE, MEANINGS, UNITS
 
@@ -74,6 +74,9 @@ CONSTRAINTS = {
 
 Metric = Union[str, Callable[[Log], float]]
 
+METRICS = {**tracking_errors.METRICS, **estimation_errors.METRICS}
+"""Unit and meaning of each value of the built-in metrics, by metric."""
+
 
 @dataclass(frozen=True)
 class Criteria:
@@ -90,7 +93,7 @@ class Criteria:
     constraints: Tuple[Tuple[str, Tuple[float, ...]], ...] = ()
     """Names and limits."""
     metrics: Tuple[Metric, ...] = ()
-    """Names of `tracking_errors.METRICS`, ``FILE.py:NAME``, ``MODULE:NAME``, or functions."""
+    """Names of `METRICS`, ``FILE.py:NAME``, ``MODULE:NAME``, or functions."""
 
     @classmethod
     def make(
@@ -108,7 +111,7 @@ class Criteria:
                 if name in names:
                     raise InputError(f"metric '{name}' is named twice. Remove or rename one.")
                 names.append(name)
-            if metric not in tracking_errors.METRICS:
+            if metric not in METRICS:
                 _find_function(metric)
         return made
 
@@ -117,7 +120,7 @@ class Criteria:
         """Unit of each metric of the study, by name."""
         found = {f"{name}_violation": "s" for name, _ in self.constraints}
         for metric in self.metrics:
-            known = tracking_errors.METRICS.get(metric, {}) if isinstance(metric, str) else {}
+            known = METRICS.get(metric, {}) if isinstance(metric, str) else {}
             found.update({name: known.get(name, ("",))[0] for name in _list_columns(metric)})
         return {**UNITS, **found}
 
@@ -129,8 +132,8 @@ class Criteria:
             numbers = ", ".join(f"{x:g}" for x in limit)
             found[f"{name}_violation"] = f"time with {CONSTRAINTS[name].meaning.format(numbers)}"
         for metric in self.metrics:
-            if isinstance(metric, str) and metric in tracking_errors.METRICS:
-                known = tracking_errors.METRICS[metric]
+            if isinstance(metric, str) and metric in METRICS:
+                known = METRICS[metric]
                 found.update({name: meaning for name, (_, meaning) in known.items()})
             else:
                 found[_list_columns(metric)[0]] = f"your metric {_name(metric)}"
@@ -140,6 +143,11 @@ class Criteria:
     def needs_flat_states(self) -> bool:
         """Whether a metric compares the flight with the attitude of the reference."""
         return any(metric in tracking_errors.METRICS for metric in self.metrics)
+
+    @property
+    def needs_estimates(self) -> bool:
+        """Whether a metric compares the estimates of the controllers with the true states."""
+        return any(metric in estimation_errors.METRICS for metric in self.metrics)
 
     def measure(self, flight: FlightRecord) -> Dict[str, float]:
         """Compute the values of constraints and metrics of a completed flight.
@@ -158,6 +166,8 @@ class Criteria:
         for metric in self.metrics:
             if isinstance(metric, str) and metric in tracking_errors.METRICS:
                 found.update(tracking_errors.measure(metric, flight.log, flight.flat_states))
+            elif isinstance(metric, str) and metric in estimation_errors.METRICS:
+                found.update(estimation_errors.measure(flight.estimate_errors))
             else:
                 found[_list_columns(metric)[0]] = _call(metric, flight.log)
         return found
@@ -190,8 +200,8 @@ def _name(metric: Metric) -> str:
 
 def _list_columns(metric: Metric) -> List[str]:
     """List the columns of a metric."""
-    if isinstance(metric, str) and metric in tracking_errors.METRICS:
-        return list(tracking_errors.METRICS[metric])
+    if isinstance(metric, str) and metric in METRICS:
+        return list(METRICS[metric])
     return [_name(metric).rpartition(":")[2]]
 
 
@@ -200,7 +210,7 @@ def _find_function(metric: Metric) -> Callable[[Log], float]:
         return metric
     if ":" not in metric:
         raise InputError(
-            f"metric '{metric}' does not exist. Use {', '.join(tracking_errors.METRICS)}, "
+            f"metric '{metric}' does not exist. Use {', '.join(METRICS)}, "
             "FILE.py:NAME or MODULE:NAME."
         )
     found: Callable[[Log], float] = find_object(f"metric '{metric}'", metric, lambda one: one)

@@ -70,6 +70,8 @@ class FlightRecord(NamedTuple):
     """Topic of the commands, if the log contains it."""
     flat_states: Optional[np.ndarray] = None
     """Result of `sample_flat_states` at the times of the log."""
+    estimate_errors: Optional[np.ndarray] = None
+    """As in `ControllerPilot.estimate_errors`."""
 
 
 def make_record(
@@ -89,6 +91,7 @@ def make_record(
         rate=pilot.rate,
         delay=pilot.delay,
         is_vectorized=pilot.is_vectorized,
+        estimate_errors=pilot.estimate_errors,
         rotors=[RotorData.of(rotor) for rotor in simulation.rotors],
         limit=find_speed_limit(simulation.rotors),
         model=plan.model,

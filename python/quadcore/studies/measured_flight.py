@@ -96,7 +96,7 @@ def fly_alone(
     most: float,
     keep: bool = False,
     timed: bool = True,
-    needs_flat_states: bool = False,
+    criteria: Criteria = DEFAULT,
     logs_commands: bool = False,
 ) -> FlightRecord:
     """Simulate a flight.
@@ -111,8 +111,8 @@ def fly_alone(
         Whether to log the topics of the animation.
     timed
         Whether to time each update of the controller, which slows the flight.
-    needs_flat_states
-        Whether the record has `flat_states`.
+    criteria
+        Metrics that the record is for.
     logs_commands
         Whether to log the commands, for spectra.
 
@@ -127,6 +127,8 @@ def fly_alone(
         flight = described()
         simulation = flight.simulation()
         pilot: Any = flight.pilot(simulation, timed)
+        if criteria.needs_estimates:
+            pilot.note_estimates()
         topics = _animated_topics(simulation) if keep else []
         commands = simulation.command_topic if logs_commands else ""
         if commands and commands not in topics:
@@ -146,7 +148,7 @@ def fly_alone(
         except FlightError as error:
             failure = str(error)
         log, flat_states = rows.log(), None
-        if needs_flat_states:
+        if criteria.needs_flat_states:
             flat_states = sample_flat_states(flight.simulation(), flight, log.time)
         return make_record(
             pilot,

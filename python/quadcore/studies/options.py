@@ -34,8 +34,7 @@ from ..simulation.scenarios import NONE
 from ..support import arguments, parse
 from ..support.arguments import Kind
 from ..support.values import SPAWN, Number, Value
-from .criteria import CONSTRAINTS, Criteria, Metric
-from .tracking_errors import METRICS as TRACKING
+from .criteria import CONSTRAINTS, METRICS, Criteria, Metric
 from .tracking_metrics import FAILURE_DISTANCE
 
 Names = Union[str, Path, Sequence[Union[str, Path]]]
@@ -247,7 +246,7 @@ class CriteriaOptions(ControlOptions):
     ))  # fmt: skip
     metrics: Sequence[Metric] = field(default=(), metadata=_describe(
         STUDY, "metric", "NAME",
-        f"further metric: {', '.join(TRACKING)}; or your function of the log, FILE.py:NAME or "
+        f"further metric: {', '.join(METRICS)}; or your function of the log, FILE.py:NAME or "
         "MODULE:NAME",
         kind=arguments.METRICS, repeats=True,
     ))  # fmt: skip

@@ -126,6 +126,24 @@ def compose_roll_pitch_yaw(angles: np.ndarray) -> np.ndarray:
     )
 
 
+def compute_rotation_vector(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Return the rotation vector from one orientation to another, in the axes of the first, rad.
+
+    Parameters
+    ----------
+    first, second : ndarray (4,)
+        Unit quaternions x, y, z, w.
+    """
+    v, w = first[:3], first[3]
+    scalar = w * second[3] + v @ second[:3]
+    vector = w * second[:3] - second[3] * v - np.cross(v, second[:3])
+    if scalar < 0:
+        vector = -vector
+    sine = float(np.linalg.norm(vector))
+    angle = 2 * np.arctan2(sine, abs(scalar))
+    return np.asarray(vector * (angle / sine if sine > 0 else 2.0))
+
+
 def turn(orientation: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Rotate a body about an axis in body axes.
 

@@ -302,7 +302,7 @@ class _Flights:
                 flights[i],
                 options.time_limit,
                 is_drawn,
-                needs_flat_states=criteria.needs_flat_states,
+                criteria=criteria,
                 logs_commands=is_drawn and self._plan.draws_spectra,
             )
 

@@ -105,9 +105,8 @@ class Flight:
 
     def fly(self) -> FlightRecord:
         """Simulate the flight of a controller; raises `QuadcoreError` if it cannot start."""
-        flat = self.criteria.needs_flat_states
         return fly_alone(
-            self._plan_with_controller, self.limit, timed=False, needs_flat_states=flat
+            self._plan_with_controller, self.limit, timed=False, criteria=self.criteria
         )
 
     def watch(self) -> Log:
