@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ..studies.fit.judgement import Judgement
     from ..studies.fit.prepared import PreparedFlight
     from ..studies.fit.recorded import RecordedFit
+    from ..studies.fit.replay import Replay
 
 
 def show_flights(flights: Sequence[PreparedFlight]) -> None:
@@ -71,3 +72,15 @@ def show_judgement(judgement: Judgement) -> None:
     console.print(table)
     count = len(judgement.windows.start)
     console.print(f"{count} windows; the first 30 % of each flight gave its delay and trim", "")
+
+
+def show_replays(replays: Sequence[Replay]) -> None:
+    """Print the distance of replays and set-points to the real flights."""
+    console = terminal.make_console()
+    table = terminal.make_table("recording", "distance to the real flight", "RMS", "max", "unit")
+    for replay in replays:
+        name = Path(replay.where).name
+        for title, (rms, largest) in replay.list_rows():
+            table.add_row(name, title, f"{rms:.3g}", f"{largest:.3g}", "m")
+            name = ""
+    console.print(table, "")

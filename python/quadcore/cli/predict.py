@@ -41,6 +41,12 @@ def register(commands: Any) -> None:
         help="map from commands to rotor speeds that `fit` wrote (default: MODEL.inputs.yaml "
         "next to the model, else from the hover)",
     )
+    study.add_argument(
+        "--controller",
+        metavar="NAME",
+        help="controller that follows the set-points of the recording in closed loop, to compare "
+        "with the real flight: NAME[:KEY=VALUE,...] (default: none)",
+    )
     add_force(parser)
     options.add_options(parser, "world")
     output.add_argument(
@@ -72,22 +78,25 @@ def _predict(arguments: argparse.Namespace) -> None:
     from ..studies.fit.input_file import find_inputs
     from ..studies.fit.output import write_prediction
     from ..studies.fit.recorded import predict_recordings
-    from .flight_tables import show_flights, show_judgement
+    from .flight_tables import show_flights, show_judgement, show_replays
 
     shared = reading.read_model_arguments(arguments)
     plan = FlightPlan.of(**shared, world=arguments.world)
-    judgement, flights = predict_recordings(
+    judgement, flights, replays = predict_recordings(
         shared.pop("model"),
         arguments.log,
         inputs=find_inputs(arguments.inputs, arguments.model),
         mapping=arguments.mapping,
         world=arguments.world,
+        controller=arguments.controller,
         **shared,
     )
-    written = write_prediction(arguments.out, judgement, flights, plan.model, plan.world)
+    written = write_prediction(arguments.out, judgement, flights, plan.model, plan.world, replays)
     if not arguments.quiet:
         show_flights(flights)
         show_judgement(judgement)
+        if replays:
+            show_replays(replays)
         terminal.print_written(written)
     if not arguments.force:
         judgement.check()

@@ -78,10 +78,10 @@ def _find_format(head: bytes) -> str:
 
 
 def _find_mapping(header: Sequence[str]) -> Optional[str]:
-    """Return the first built-in mapping of CSV files whose columns are all in the header."""
+    """Return the first built-in mapping of CSV files whose measurements are all in the header."""
     for name in list_mappings():
         known = read_mapping(name)
-        if known.format == "csv" and {known.time, *known.list_columns()} <= set(header):
+        if known.format == "csv" and {known.time, *known.list_measured()} <= set(header):
             return name
     return None
 

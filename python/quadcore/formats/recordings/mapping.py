@@ -19,9 +19,12 @@ QUANTITIES: Dict[str, int] = {
     "rotors": 0,
     "commands": 0,
     "battery": 1,
+    "setpoint": 3,
+    "setpoint_yaw": 1,
 }
 """Quantities of a recording, and their number of columns; 0: see `_count_columns`."""
 
+_SETPOINT = "setpoint"
 _ORDERS = {"xyzw": 4, "wxyz": 4, "roll_pitch_yaw": 3}
 _FOLDER = Path(__file__).parent / "mappings"
 _TOP = ("format", "time", "world", "body", "rotor_order", "spin", *QUANTITIES)
@@ -93,6 +96,11 @@ class LogMapping(NamedTuple):
     def list_columns(self) -> List[str]:
         """List the columns of all entries."""
         return [name for group in self.entries.values() for each in group for name in each.columns]
+
+    def list_measured(self) -> List[str]:
+        """List the columns of all entries but the set-points, which few logs contain."""
+        measured = {n: group for n, group in self.entries.items() if not n.startswith(_SETPOINT)}
+        return self._replace(entries=measured).list_columns()
 
 
 def list_mappings() -> List[str]:

@@ -23,6 +23,7 @@ class Recording(NamedTuple):
         ``rates`` (rad/s), ``acceleration`` (specific force, m/s^2) in the body: forward, left, up.
         ``rotors`` (rad/s), signed by the spin if it is known. ``commands``, 0 to 1 if their range
         is known. ``battery`` (V).
+        ``setpoint`` (m) and ``setpoint_yaw`` (rad) of a position controller, as ``position``.
     spin : ndarray (rotors,), optional
         Direction of rotation of each rotor, 1 or -1.
     """
@@ -76,8 +77,10 @@ def _convert(name: str, series: Series, entry: Entry, mapping: LogMapping) -> Se
     time = series.time * (mapping.time_factor if mapping.format == "csv" else 1.0)
     if name == "orientation":
         values = _to_quaternions(values, entry.order, mapping)
-    elif name in ("position", "velocity") and mapping.is_ned and entry.axes == "world":
+    elif name in ("position", "velocity", "setpoint") and mapping.is_ned and entry.axes == "world":
         values = values[:, [1, 0, 2]] * (1, 1, -1)
+    elif name == "setpoint_yaw" and mapping.is_ned:
+        values = np.pi / 2 - values
     elif mapping.is_frd and (name in ("rates", "acceleration") or entry.axes == "body"):
         values = values * (1, -1, -1)
     elif name in ("commands", "rotors"):

@@ -145,9 +145,11 @@ def _find_lag(reference: Series, topic: Series) -> Optional[float]:
     most = round(_MOST / _STEP)
     wide = np.arange(begin - _MOST, end + _MOST, _STEP)
     other = _interpolate(topic, wide)
+    centre = np.median(one, axis=0)
+    limit = 6 * np.median(np.abs(one - centre), axis=0) + 1e-9
+    # Glitches would decide. Both are clipped, because clipping moves the maximum.
+    one, other = (np.clip(each - centre, -limit, limit) for each in (one, other))
     one = one - one.mean(axis=0)
-    limit = 6 * np.median(np.abs(one), axis=0) + 1e-9
-    one = np.clip(one, -limit, limit)  # glitches would decide
     scores = np.array([_correlate(one, other[k : k + len(one)]) for k in range(2 * most + 1)])
     best = int(scores.argmax())
     if best in (0, len(scores) - 1):

@@ -27,6 +27,7 @@ from .inputs import INPUTS
 from .judgement import CONSTANT, DECISIVE, Judgement, make_logs
 from .prepared import PreparedFlight
 from .recorded import RecordedFit
+from .replay import Replay
 from .windows import HORIZONS
 
 PAGE = "report.html"
@@ -47,6 +48,7 @@ def write_prediction(
     flights: Sequence[PreparedFlight],
     model: Model,
     world: World,
+    replays: Sequence[Replay] = (),
 ) -> List[Path]:
     """Write the errors, the page, and measured and predicted motion if there is a pose.
 
@@ -60,15 +62,26 @@ def write_prediction(
         Predicted recordings.
     model, world
         Model and world of the predictions.
+    replays
+        Replays; the first one is animated instead of the predictions.
     """
     written, images = _write_errors(folder, judgement)
     values = {**_describe_predictions(judgement, flights), "plots": images}
     count = len(judgement.windows.start)
     verdict = _compare_with_baselines(judgement)
+    logs, note = make_logs(judgement), _OF_WINDOWS
+    if replays:
+        logs = [("measured", replays[0].measured), ("replayed", replays[0].flown)]
+        note = f"First recording, and its set-points flown with {replays[0].controller}."
+    values["replays"] = [
+        {"recording": Path(replay.where).name, "title": title, "rms": rms, "max": largest}
+        for replay in replays
+        for title, (rms, largest) in replay.list_rows()
+    ]
     return [
         *written,
         *_write_page(
-            folder, "predict.html", make_logs(judgement), model, world, verdict=verdict,
+            folder, "predict.html", logs, model, world, verdict=verdict, player_note=note,
             title=f"Prediction of real flights: {model.name}",
             conditions=f"{_name_recordings(flights)}; {count} predictions, engine eigen.", **values,
         ),
@@ -159,9 +172,11 @@ def _write_page(
     player = ""
     if logs:
         vehicle = read_vehicle(model)
-        if logs[0][1].rotor_velocity.shape[1] != vehicle.rotor_count:
-            vehicle = vehicle.fix_rotors()
-        shown = [PlayerFlight(name, log, vehicle) for name, log in logs]
+        turning = [log.rotor_velocity.shape[1] == vehicle.rotor_count for _, log in logs]
+        shown = [
+            PlayerFlight(name, log, vehicle if turns else vehicle.fix_rotors())
+            for (name, log), turns in zip(logs, turning)
+        ]
         player = make_section(shown, draw_world(world))
     write_page(folder / PAGE, template, player=player, **values)
     return [*written, folder / PAGE]

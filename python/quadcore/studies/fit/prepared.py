@@ -39,6 +39,8 @@ class PreparedFlight(NamedTuple):
         Velocity in the world, from the positions, m/s.
     commands, rotors, battery : Series, optional
         Inputs.
+    setpoint, setpoint_yaw : Series, optional
+        Set-points of position (m) and yaw (rad), each valid until the next.
     spin : ndarray, optional
         Direction of rotation of each rotor.
     span : tuple of float
@@ -65,6 +67,8 @@ class PreparedFlight(NamedTuple):
     commands: Optional[Series]
     rotors: Optional[Series]
     battery: Optional[Series]
+    setpoint: Optional[Series]
+    setpoint_yaw: Optional[Series]
     spin: Optional[np.ndarray]
     span: Tuple[float, float]
     gaps: np.ndarray
@@ -133,6 +137,8 @@ def prepare_flight(path: Union[str, Path], mapping: Optional[str] = None) -> Pre
         given.get("commands"),
         given.get("rotors"),
         given.get("battery"),
+        given.get("setpoint"),
+        given.get("setpoint_yaw"),
         recording.spin,
         find_span(recording),
         _join_gaps(recording, has_pose),

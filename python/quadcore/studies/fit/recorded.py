@@ -14,6 +14,7 @@ from .judgement import Judgement, judge_models
 from .predictor import Predictor, find_plugin
 from .prepared import PreparedFlight, check_copies, prepare_flight
 from .problem import check_free_names, make_parameter
+from .replay import Replay, replay_flight
 from .windows import make_windows
 
 _TAGS = (
@@ -166,13 +167,16 @@ def predict_recordings(
     xacro_args: Optional[Dict[str, object]] = None,
     ignore: Sequence[str] = (),
     world: Any = None,
-) -> Tuple[Judgement, List[PreparedFlight]]:
+    controller: Optional[str] = None,
+) -> Tuple[Judgement, List[PreparedFlight], List[Replay]]:
     """Predict recordings with a model, and compare with constant velocity and rates.
 
     Parameters
     ----------
     inputs
         Values of `INPUTS` (default: from the balance of thrust and weight).
+    controller
+        Controller that follows the recorded set-points in closed loop (default: no replay).
     model, logs, mapping, parameters, xacro_args, ignore, world
         As for `fit_recordings`.
     """
@@ -182,7 +186,8 @@ def predict_recordings(
         predictor = Predictor(fitted, make_windows(flights))
         weight = 9.81 * fitted.simulation.mass
         inputs = guess_speed(flights, predictor.rotors, weight)
-    return judge_models({"model": (fitted, inputs)}, flights), flights
+    replays = [replay_flight(fitted, flight, controller) for flight in flights if controller]
+    return judge_models({"model": (fitted, inputs)}, flights), flights, replays
 
 
 def list_default_names(fitted: FittedModel, flights: Sequence[PreparedFlight]) -> List[str]:
