@@ -7,10 +7,11 @@
 // threads only read the clock. Therefore all that the program computes depends on the received
 // packets alone.
 //
-// The simulator holds the other end of the socket QUADCORE_LOCKSTEP (a file descriptor). It writes
-// horizons as 64-bit nanoseconds. It reads 's' when the main thread stands at the horizon, and 'h'
-// when a thread has handled a packet, that is, returns to select(). QUADCORE_PORTS
-// ("9002:41000,...") replaces ports; packets to port 0 are discarded.
+// The simulator holds the other end of the socket QUADCORE_LOCKSTEP (a file descriptor). When the
+// main thread stands at the horizon, it writes 's' and the latest datagram that the program has
+// sent to the port QUADCORE_ANSWERS since the last time, if any. It reads a `Command`.
+// QUADCORE_PORTS
+// ("9003:41000,...") replaces ports; packets to port 0 are discarded.
 
 #include <dlfcn.h>
 #include <netinet/in.h>
@@ -22,9 +23,12 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <vector>
 
 namespace {
 
@@ -33,13 +37,26 @@ constexpr std::int64_t kSecond = 1000000000;   // ns
 constexpr std::int64_t kStart = 10 * kSecond;  // time at which the program starts
 constexpr int kMostPorts = 16;
 
+/// What the simulator lets the main thread do.
+struct Command {
+  std::int64_t horizon = kStart;  ///< ns; time up to which the main thread runs
+  std::int64_t packets = 0;       ///< packets that are to be handled before, since the start
+};
+
 std::atomic<std::int64_t> clock_now{kStart};
-std::int64_t horizon = kStart;
+Command command;
 int simulator = -1;
+int answer_port = -1;
 int replaced_ports[kMostPorts][2];
 int port_count = 0;
 std::atomic<int> started_threads{0}, selecting_threads{0};
-thread_local bool is_main = false, has_received = false, has_selected = false;
+thread_local bool is_main = false, has_selected = false;
+thread_local int received_packets = 0;
+
+std::mutex mutex;  // of what follows
+std::condition_variable has_handled;
+std::int64_t handled_packets = 0;
+std::vector<char> answer{'s'};
 
 template <class Function>
 Function* find_next(Function*, const char* name) {
@@ -48,18 +65,23 @@ Function* find_next(Function*, const char* name) {
 
 bool is_in_lockstep() { return simulator >= 0; }
 
-/// Sends an event to the simulator; without a simulator, the program ends.
-void tell(char event) {
-  if (send(simulator, &event, 1, MSG_NOSIGNAL) != 1) _exit(0);
+/// Sends the latest answer to the simulator and waits for its command; without a simulator, the
+/// program ends.
+void stand() {
+  std::unique_lock<std::mutex> lock(mutex);
+  const auto size = static_cast<ssize_t>(answer.size());
+  if (send(simulator, answer.data(), answer.size(), MSG_NOSIGNAL) != size) _exit(0);
+  answer.resize(1);
+  lock.unlock();
+  if (recv(simulator, &command, sizeof command, 0) != sizeof command) _exit(0);
+  lock.lock();
+  has_handled.wait(lock, [] { return handled_packets >= command.packets; });
 }
 
 /// Advances the clock of the main thread, which waits at the horizon.
 void advance(std::int64_t duration) {
   clock_now += duration;
-  while (clock_now > horizon) {
-    tell('s');
-    if (recv(simulator, &horizon, sizeof horizon, 0) != sizeof horizon) _exit(0);
-  }
+  while (clock_now > command.horizon) stand();
 }
 
 int find_port(int port) {
@@ -84,6 +106,7 @@ bool has_port(const sockaddr* address, socklen_t length) {
 __attribute__((constructor)) void begin() {
   is_main = true;
   if (const char* text = std::getenv("QUADCORE_LOCKSTEP")) simulator = std::atoi(text);
+  if (const char* text = std::getenv("QUADCORE_ANSWERS")) answer_port = std::atoi(text);
   const char* rest = std::getenv("QUADCORE_PORTS");
   while (rest != nullptr && *rest != '\0' && port_count < kMostPorts) {
     char* end = nullptr;
@@ -120,9 +143,13 @@ QUADCORE_EXPORT int nanosleep(const timespec* duration, timespec* rest) {
 QUADCORE_EXPORT int select(int count, fd_set* read, fd_set* write, fd_set* except, timeval* limit) {
   static auto* const next = find_next(&select, "select");
   if (is_in_lockstep() && !is_main) {
-    if (has_received) tell('h');
+    if (received_packets > 0) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      handled_packets += received_packets;
+      has_handled.notify_one();
+    }
     if (!has_selected) ++selecting_threads;
-    has_received = false;
+    received_packets = 0;
     has_selected = true;
   }
   return next(count, read, write, except, limit);
@@ -132,7 +159,7 @@ QUADCORE_EXPORT ssize_t recvfrom(int socket, void* data, size_t size, int flags,
                                  socklen_t* length) {
   static auto* const next = find_next(&recvfrom, "recvfrom");
   const ssize_t received = next(socket, data, size, flags, from, length);
-  has_received = has_received || received >= 0;
+  if (received >= 0) ++received_packets;
   return received;
 }
 
@@ -159,6 +186,14 @@ QUADCORE_EXPORT ssize_t sendto(int socket, const void* data, size_t size, int fl
                                const sockaddr* address, socklen_t length) {
   static auto* const next = find_next(&sendto, "sendto");
   if (!has_port(address, length)) return next(socket, data, size, flags, address, length);
+  const int port = ntohs(reinterpret_cast<const sockaddr_in*>(address)->sin_port);
+  if (is_in_lockstep() && port == answer_port) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    answer.resize(1);
+    answer.insert(answer.end(), static_cast<const char*>(data),
+                  static_cast<const char*>(data) + size);
+    return static_cast<ssize_t>(size);
+  }
   const sockaddr_in replaced = replace_port(address);
   if (replaced.sin_port == 0) return static_cast<ssize_t>(size);
   return next(socket, data, size, flags, reinterpret_cast<const sockaddr*>(&replaced),

@@ -6,8 +6,9 @@ is the base class of bridges to other stacks.
 
 from .autopilot import Autopilot
 from .betaflight.betaflight import Betaflight
+from .crazyflie import Crazyflie
 from .readings import Readings
 from .stacks import read_autopilot
 from .sticks import Sticks
 
-__all__ = ["Autopilot", "Betaflight", "Readings", "Sticks", "read_autopilot"]
+__all__ = ["Autopilot", "Betaflight", "Crazyflie", "Readings", "Sticks", "read_autopilot"]

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any, Callable, List, Optional, Sequence
+from typing import Any, Callable, List, Mapping, Optional, Sequence
 
 import numpy as np
 
 from .._core import FlightError, InputError
 from ..control.vehicle import Vehicle, unwrap
 from .motor_curve import CurveLike, MotorCurve
-from .readings import Readings, Sensors
+from .readings import Readings, Sensors, read_held
 from .rotor_map import Channel, Place, check_reaction, map_channels
-from .session import Session
+from .session import Link, Recorder, Session
 
 
 class Autopilot:
@@ -88,7 +88,9 @@ class Autopilot:
         self.record: Optional[Path] = None
         self.session: Optional[Session] = None
         self.words: Sequence[str] = ()
-        self.log = {f"output{i}": math.nan for i in range(1, len(self.layout) + 1)}
+        self._recorder: Optional[Recorder] = None
+        self._names = [f"output{i}" for i in range(1, len(self.layout) + 1)]
+        self.log = dict.fromkeys(self._names, math.nan)
 
     def start(self, vehicle: Vehicle) -> None:
         """Start the program and connect to it.
@@ -141,8 +143,26 @@ class Autopilot:
         """Ticks from one call of `pilot` to the next, from the first reset on."""
         return max(1, round(1 / (self.pilot_rate * self.period)))
 
+    def record_link(self, link: Link, about: Mapping[str, Any]) -> Link:
+        """Return the link for the flight, which records the session if that is wanted.
+
+        Parameters
+        ----------
+        link : Link
+            Link to the program.
+        about : mapping
+            Description of the flight; see `describe_session`.
+        """
+        if self.record is None:
+            return link
+        self._recorder = Recorder(link, self.record, {**about, "words": list(self.words)})
+        return self._recorder
+
     def close(self) -> None:
-        """End the program, and remove its files; called after every flight."""
+        """Write the session; a subclass also ends the program. Called after every flight."""
+        if self._recorder is not None:
+            self._recorder.write()
+            self._recorder = None
 
     def reset(self, simulation: Any) -> None:
         """Start the autopilot, and hold the vehicle until it is ready."""
@@ -150,13 +170,12 @@ class Autopilot:
         self.prepare(simulation)
         self.start(simulation.vehicle)
         self._sensors = Sensors(simulation, self.imu)
-        held = self._sensors.read(simulation.time)
-        self._sensors = Sensors(simulation, self.imu)
+        state = simulation.state.copy()
+        held = read_held(0.0, state.orientation, self._sensors.gravity, state.position, np.zeros(3))
         self._ticks = 0
         held_ticks = 0 if self.session is not None else round(self.hold / self.period)
         for k in range(held_ticks, 0, -1):
-            t = -k * self.period
-            self._ask(held.at_rest(t, self._sensors.gravity), None, None)
+            self._ask(held._replace(time=-k * self.period), None, None)
         self._begin, self._ticks = simulation.time, 0
 
     def prepare(self, simulation: Any) -> None:
@@ -191,12 +210,11 @@ class Autopilot:
         if self._ticks % self.pilot_every == 0:
             self._sticks_held = self.pilot(readings.time, state, reference)
         self._ticks += 1
-        outputs = np.asarray(self.tick(readings, self._sticks_held), dtype=float)
-        if outputs.shape != (len(self.channels),) or not np.all(np.isfinite(outputs)):
+        outputs = [float(output) for output in self.tick(readings, self._sticks_held)]
+        if len(outputs) != len(self.channels) or not all(map(math.isfinite, outputs)):
             raise self.fail(readings.time, f"the autopilot answered with outputs {outputs}")
-        for i, output in enumerate(outputs, 1):
-            self.log[f"output{i}"] = float(output)
-        return outputs
+        self.log.update(zip(self._names, outputs))
+        return np.array(outputs)
 
     def fail(self, t: float, reason: str) -> FlightError:
         """Make the error that ends a flight at a time (s) for a reason."""

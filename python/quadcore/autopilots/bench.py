@@ -7,12 +7,12 @@ from typing import Any, List, Protocol, Sequence, Tuple
 
 import numpy as np
 
-from ..support.rotation import to_matrix, turn
+from ..support.rotation import turn
 from .autopilot import Autopilot
-from .readings import Readings
+from .readings import read_held
 from .sticks import Sticks
 
-_LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
+_LEVEL, _ORIGIN = np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(3)
 
 
 class Questions(Protocol):
@@ -81,15 +81,8 @@ class Bench:
 
     def tick(self, angular_velocity: Any = (0.0, 0.0, 0.0)) -> None:
         """Let the autopilot compute one period."""
-        up = to_matrix(self._orientation)[2]
-        zero = np.zeros(3)
-        readings = Readings(
-            self._time,
-            zero,
-            zero,
-            self._orientation,
-            np.asarray(angular_velocity),
-            self._gravity * up,
+        readings = read_held(
+            self._time, self._orientation, self._gravity, _ORIGIN, np.asarray(angular_velocity)
         )
         # A radio that falls silent disarms an autopilot.
         if self._ticks % self._autopilot.pilot_every == 0:

@@ -36,19 +36,31 @@ class Readings(NamedTuple):
     angular_velocity: np.ndarray
     specific_force: np.ndarray
 
-    def at_rest(self, time: float, gravity: float) -> Readings:
-        """Return the readings of a vehicle that is held still in this pose.
 
-        Parameters
-        ----------
-        time : float
-            Time of the readings, s.
-        gravity : float
-            Gravitational acceleration along -z of the world, m/s^2.
-        """
-        up = to_matrix(self.orientation)[2]
-        zero = np.zeros(3)
-        return Readings(time, self.position, zero, self.orientation, zero, gravity * up)
+def read_held(
+    time: float,
+    orientation: np.ndarray,
+    gravity: float,
+    position: np.ndarray,
+    angular_velocity: np.ndarray,
+) -> Readings:
+    """Return the readings of a vehicle that is held in a place, and turned there or not.
+
+    Parameters
+    ----------
+    time : float
+        Time of the readings, s.
+    orientation : ndarray (4,)
+        Orientation, unit quaternion x, y, z, w.
+    gravity : float
+        Gravitational acceleration, m/s^2.
+    position : ndarray (3,)
+        Position, m.
+    angular_velocity : ndarray (3,)
+        Angular velocity, body axes, rad/s.
+    """
+    up = to_matrix(orientation)[2]
+    return Readings(time, position, np.zeros(3), orientation, angular_velocity, gravity * up)
 
 
 class Sensors:
@@ -96,9 +108,9 @@ class Sensors:
         )
         before, self._before = self._before, new
         if before is None:
-            return new.at_rest(time, self._gravity)._replace(
-                linear_velocity=new.linear_velocity, angular_velocity=new.angular_velocity
-            )
+            return read_held(
+                time, new.orientation, self._gravity, new.position, new.angular_velocity
+            )._replace(linear_velocity=new.linear_velocity)
         if self._imu:
             message = self._simulation.topic(self._imu)
             return new._replace(

@@ -8,16 +8,16 @@ answer.
 from __future__ import annotations
 
 import gzip
+import hashlib
 import json
 import struct
 import zlib
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Protocol, Tuple, Union
 
 from .._core import InputError
 from ..support.input_files import LARGEST, open_file
 from ..support.output_files import atomic_write, printable_name
-from .exchange import Exchange
 
 _VERSION = 1
 _RECORD = struct.Struct("<IB")
@@ -25,33 +25,43 @@ _RECORD = struct.Struct("<IB")
 Fail = Callable[[str], Exception]
 
 
+class Link(Protocol):
+    """Link to an autopilot that answers."""
+
+    def send(self, packet: bytes, port: int, fail: Fail) -> None:
+        """Send a packet that is not answered."""
+
+    def ask(self, packet: bytes, port: int, fail: Fail) -> bytes:
+        """Send a packet and return the answer."""
+
+
 class Recorder:
-    """Exchange that records what passes through another one.
+    """Link that records what passes through another one.
 
     Parameters
     ----------
-    exchange : Exchange
-        Exchange with the program.
+    link : Link
+        Link to the autopilot.
     path : path
         File to write, which appears when the exchange is closed.
     about : dict
         Description of the flight, in plain values.
     """
 
-    def __init__(self, exchange: Exchange, path: Path, about: Dict[str, Any]) -> None:
-        self._exchange, self._path = exchange, path
+    def __init__(self, link: Link, path: Path, about: Dict[str, Any]) -> None:
+        self._link, self._path = link, path
         self._head = json.dumps({"quadcore session": _VERSION, **about}, sort_keys=True)
         self._records: List[bytes] = []
         self._digest = 0
 
     def send(self, packet: bytes, port: int, fail: Fail) -> None:
-        """Send a packet, as `Exchange.send`."""
+        """Send a packet, as `Link.send`."""
         self._digest = zlib.crc32(packet, self._digest)
-        self._exchange.send(packet, port, fail)
+        self._link.send(packet, port, fail)
 
     def ask(self, packet: bytes, port: int, fail: Fail) -> bytes:
-        """Ask, as `Exchange.ask`."""
-        answer = self._exchange.ask(packet, port, fail)
+        """Ask, as `Link.ask`."""
+        answer = self._link.ask(packet, port, fail)
         digest = zlib.crc32(packet, self._digest)
         self._records.append(_RECORD.pack(digest, len(answer)) + answer)
         self._digest = 0
@@ -136,6 +146,31 @@ class Session:
     def is_at_end(self) -> bool:
         """Whether all answers have been given."""
         return self._next == len(self._records)
+
+
+def describe_session(
+    stack: str, program: Path, settings: Mapping[str, Any], parameters: Mapping[str, str]
+) -> Dict[str, Any]:
+    """Return the description of a flight for `Recorder`, in plain values.
+
+    Parameters
+    ----------
+    stack
+        Name of the stack.
+    program
+        File of the program.
+    settings
+        Arguments of the class of the stack with which the session is replayed.
+    parameters
+        Parameters of the autopilot.
+    """
+    return {
+        "autopilot": stack,
+        "settings": dict(settings),
+        "program": program.name,
+        "sha256": hashlib.sha256(program.read_bytes()).hexdigest(),
+        "parameters": dict(parameters),
+    }
 
 
 def _split(content: bytes) -> Iterator[Tuple[int, bytes]]:

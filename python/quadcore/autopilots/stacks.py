@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
-from typing import Any, Callable, Dict, NamedTuple, Union
+from typing import Any, Callable, Dict, NamedTuple, Sequence, Union
 
 from .._core import InputError
 from ..support.user_code import find_controller
 from .autopilot import Autopilot
 from .betaflight.betaflight import Betaflight
+from .crazyflie import Crazyflie
 from .motor_curve import read_curve
 from .session import Session
 from .stack_file import StackFile, read_stack_file
@@ -22,10 +23,22 @@ class Stack(NamedTuple):
     """Noun phrase for lists."""
     make: Callable[..., Autopilot]
     """Makes the controller from the values of a stack file."""
+    is_module: bool
+    """Whether the program is a Python module, which runs in this process."""
+    keys: Sequence[str]
+    """Keys of stack files that other stacks need not have."""
 
 
 STACKS: Dict[str, Stack] = {
-    "betaflight": Stack("Betaflight SITL over UDP, level mode with stick pilot", Betaflight)
+    "betaflight": Stack(
+        "Betaflight SITL over UDP, level mode with stick pilot",
+        Betaflight,
+        False,
+        ("arguments", "commands", "lockstep", "pilot"),
+    ),
+    "crazyflie": Stack(
+        "Crazyflie firmware in this process, Mellinger's controller", Crazyflie, True, ()
+    ),
 }
 """Stacks by their names in stack files."""
 
@@ -44,7 +57,16 @@ def read_autopilot(path: Union[str, Path]) -> Autopilot:
         If the file is missing or wrong; the message begins with ``FILE:LINE``.
     """
     read = read_stack_file(path, tuple(STACKS))
-    values = {**read.values, "program": _find_program(read)}
+    stack = STACKS[read.kind]
+    for other in STACKS.values():
+        for name in other.keys:
+            if name in read.values and name not in stack.keys:
+                raise InputError(
+                    f"{read.locate(name)}{name}: autopilot {read.kind} does not use it. Leave it "
+                    "out."
+                )
+    find = _find_module if stack.is_module else _find_program
+    values = {**read.values, "program": find(read)}
     if "motor_curve" in values:
         try:
             read_curve(values["motor_curve"])
@@ -53,7 +75,7 @@ def read_autopilot(path: Union[str, Path]) -> Autopilot:
     if "pilot" in values:
         values["pilot"] = _find_pilot(read)
     where = {name: read.locate(name) for name in read.lines}
-    return STACKS[read.kind].make(**values, where=where)
+    return stack.make(**values, where=where)
 
 
 def make_replay(session: Session) -> Autopilot:
@@ -83,6 +105,17 @@ def _find_program(read: StackFile) -> str:
             "it, or correct its path."
         )
     return found
+
+
+def _find_module(read: StackFile) -> str:
+    """Return the path of the module; raises `InputError` if there is none."""
+    name: str = read.values["program"]
+    if not Path(name).is_file():
+        raise InputError(
+            f"{read.locate('program')}module '{name}' does not exist. Build it, or correct its "
+            "path."
+        )
+    return name
 
 
 def _find_pilot(read: StackFile) -> Any:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..control.vehicle import Vehicle
-from ..support.rotation import to_matrix, to_roll_pitch_yaw
+from ..support.rotation import to_matrix
 from .motor_curve import MotorCurve
 
 _POSITION, _VELOCITY, _INTEGRAL, _HEADING = 2.0, 2.4, 0.5, 2.0  # 1/s^2, 1/s, 1/s, 1/s
@@ -90,21 +91,23 @@ class StickPilot:
         wanted = np.asarray(reference.acceleration) + feedback + self._integral
         # The integral of the feedback over a move from rest to rest is 0: it does not overshoot.
         change = self._period * _INTEGRAL * feedback
-        self._integral = np.clip(self._integral + change, -_MOST, _MOST)
+        self._integral = np.minimum(np.maximum(self._integral + change, -_MOST), _MOST)
         force = self._mass * (wanted + np.array([0, 0, self._gravity]))
         force[2] = max(force[2], 0.2 * self._mass * self._gravity)  # never upside down
-        yaw = float(to_roll_pitch_yaw(state.orientation)[2])
-        c, s = np.cos(yaw), np.sin(yaw)
-        forward, left = c * force[0] + s * force[1], -s * force[0] + c * force[1]
-        pitch = np.arctan2(forward, force[2])
-        roll = -np.arctan2(left, np.hypot(forward, force[2]))
-        thrust = float(force @ to_matrix(state.orientation)[:, 2])
-        turn = (reference.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
+        rotation = to_matrix(state.orientation)
+        thrust = float(force @ rotation[:, 2])
+        yaw = math.atan2(rotation[1, 0], rotation[0, 0])
+        c, s = math.cos(yaw), math.sin(yaw)
+        x, y, up = force.tolist()
+        forward, left = c * x + s * y, -s * x + c * y
+        pitch = math.atan2(forward, up)
+        roll = -math.atan2(left, math.hypot(forward, up))
+        turn = (reference.yaw - yaw + math.pi) % (2 * math.pi) - math.pi
         rate = reference.yaw_rate + _HEADING * turn
         return Sticks(
-            float(np.clip(roll / self._max_angle, -1, 1)),
-            float(np.clip(pitch / self._max_angle, -1, 1)),
-            float(np.clip(-rate / self._max_yaw_rate, -1, 1)),
+            _limit(roll / self._max_angle),
+            _limit(pitch / self._max_angle),
+            _limit(-rate / self._max_yaw_rate),
             self._find_throttle(thrust),
             True,
         )
@@ -114,3 +117,7 @@ class StickPilot:
         speed = np.sqrt(max(thrust, 0.0) / self._lift)
         output = float(np.mean(self._curve.find_outputs(np.full(self._count, speed))))
         return min(max((output - self._idle) / (1 - self._idle), 0.0), 1.0)
+
+
+def _limit(stick: float) -> float:
+    return min(max(stick, -1.0), 1.0)

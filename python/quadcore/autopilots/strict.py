@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import select
 import socket
 import struct
 import time
@@ -14,9 +13,10 @@ from ..support.warning import warn
 from .exchange import PATIENCE, Exchange
 from .program import Program
 
-_HORIZON = struct.Struct("<q")
+_COMMAND = struct.Struct("<qq")  # Command of cpp/lockstep/preload.cpp
+_LIMIT = struct.pack("ll", 0, 100_000)  # timeval; s, us
+_LONGEST = 65536  # bytes
 _START = 10 * 10**9  # ns; kStart of cpp/lockstep/preload.cpp
-_STANDS, _HANDLED = b"s", b"h"
 _WAIT = 50_000  # ns
 _WAITS = 400
 _LOOK = 256  # ticks between two looks at the messages of the program
@@ -27,9 +27,10 @@ class StrictExchange(Exchange):
 
     The library ``cpp/lockstep/preload.cpp`` is preloaded into the program. The main thread of the
     program waits at a horizon of time. In each tick, the program first handles the packets. Then
-    the horizon moves by one period, and the program computes up to there. If its loop is late and
-    has sent no outputs by then, the horizon moves on in pieces of 50 us, up to 20 ms. Betaflight
-    scales its clock by the times in the packets, so that it follows the simulation all the same.
+    the horizon moves by one period, and the program computes up to there. The event that ends the
+    tick carries the outputs. If the loop is late and has sent no outputs by then, the horizon moves
+    on in pieces of 50 us, up to 20 ms. Betaflight scales its clock by the times in the packets, so
+    that it follows the simulation all the same.
 
     Parameters
     ----------
@@ -49,34 +50,39 @@ class StrictExchange(Exchange):
         self._period = round(period * 1e9)
         self._horizon = _START
         self._control, self._theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self._control_poll = select.poll()
-        self._control_poll.register(self._control, select.POLLIN)
+        self._control.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, _LIMIT)
+        self._sent = 0
         self._answer = b""
         self._ticks = 0
         self.missed = 0
 
-    def describe_environment(self, ports: Dict[int, int]) -> Tuple[Dict[str, str], Tuple[int, ...]]:
+    def describe_environment(
+        self, ports: Dict[int, int], answers: int
+    ) -> Tuple[Dict[str, str], Tuple[int, ...]]:
         """Return the environment of the program, and the file descriptors to pass on.
 
         Parameters
         ----------
         ports
             Replacements of the program's ports; packets to port 0 are discarded.
+        answers
+            Port to which the program sends its outputs.
         """
         fd = self._theirs.fileno()
-        environment = {"QUADCORE_LOCKSTEP": str(fd), **describe_preload(ports)}
-        return environment, (fd,)
+        control = {"QUADCORE_LOCKSTEP": str(fd), "QUADCORE_ANSWERS": str(answers)}
+        return {**control, **describe_preload(ports)}, (fd,)
 
     def begin(self, fail: Callable[[str], Exception]) -> None:
         """Wait until the program has started, and let it create its threads."""
         self._theirs.close()
-        self._wait(_STANDS, fail)
+        self._wait(fail)
         self._move(self._period, fail)
 
     def send(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> None:
         """Send a packet, and wait until the program has handled it."""
         super().send(packet, port, fail)
-        self._wait(_HANDLED, fail)
+        self._sent += 1
+        self._move(0, fail)
 
     def ask(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> bytes:
         """Send a packet, let the program compute one period, and return its latest outputs.
@@ -84,14 +90,13 @@ class StrictExchange(Exchange):
         They are empty as long as the program has sent none.
         """
         began = time.perf_counter()
-        self.send(packet, port, fail)
-        self._move(self._period, fail)
-        answer = self._read_last()
+        super().send(packet, port, fail)
+        self._sent += 1
+        answer = self._move(self._period, fail)
         for _ in range(_WAITS):
             if answer or not self._answer:
                 break
-            self._move(_WAIT, fail)
-            answer = self._read_last()
+            answer = self._move(_WAIT, fail)
         if answer:
             self._answer = answer
         elif self._answer:
@@ -112,44 +117,36 @@ class StrictExchange(Exchange):
         self._control.close()
         self._theirs.close()
 
-    def _read_last(self) -> bytes:
-        """Return the latest packet that has arrived, or an empty one."""
-        answer = b""
-        while self._poll.poll(0):
-            answer = self._socket.recv(65536)
-        return answer
-
-    def _move(self, duration: int, fail: Callable[[str], Exception]) -> None:
-        """Let the program compute for a duration (ns)."""
+    def _move(self, duration: int, fail: Callable[[str], Exception]) -> bytes:
+        """Let the program compute for a duration (ns), and return its latest outputs, if any."""
         self._horizon += duration
         try:
-            self._control.send(_HORIZON.pack(self._horizon))
+            self._control.send(_COMMAND.pack(self._horizon, self._sent))
         except OSError:
             raise fail(self._program.describe_end()) from None
-        self._wait(_STANDS, fail)
+        return self._wait(fail)
 
-    def _wait(self, event: bytes, fail: Callable[[str], Exception]) -> None:
-        """Wait until the program reports an event; it fails only if it ends."""
-        waited = 0.0
-        while not self._control_poll.poll(100):
-            self._program.read_messages()
-            waited += 0.1
-            if abs(waited - PATIENCE) < 0.05:
+    def _wait(self, fail: Callable[[str], Exception]) -> bytes:
+        """Wait until the program stands, and return its latest outputs; fails only if it ends."""
+        began, has_warned = time.perf_counter(), False
+        while True:
+            try:
+                event = self._control.recv(_LONGEST)
+                break
+            except BlockingIOError:
+                self._program.read_messages()
+            except OSError:
+                event = b""
+                break
+            if time.perf_counter() - began > PATIENCE and not has_warned:
                 warn(
                     f"The autopilot has not answered for {PATIENCE:g} s. quadcore waits for it. If "
                     "it is linked statically, use lockstep: plain in the stack file."
                 )
-        try:
-            read = self._control.recv(16)
-        except OSError:
-            read = b""
-        if not read:
+                has_warned = True
+        if not event:
             raise fail(self._program.describe_end())
-        if read != event:
-            raise fail(
-                f"the autopilot reported {read!r} instead of {event!r}: it is no program with one "
-                "main loop. Use lockstep: plain in the stack file."
-            )
+        return event[1:]
 
 
 def describe_preload(ports: Dict[int, int]) -> Dict[str, str]:

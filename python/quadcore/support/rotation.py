@@ -95,12 +95,16 @@ def to_matrix(orientation: np.ndarray) -> np.ndarray:
     -------
     ndarray, shape (..., 3, 3)
     """
-    x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
+    values = np.asarray(orientation, dtype=float)
+    is_single = values.ndim == 1  # numbers are ten times faster than arrays of one
+    x, y, z, w = values.tolist() if is_single else np.moveaxis(values, -1, 0)
     entries = [
         *[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
         *[2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
         *[2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
     ]
+    if is_single:
+        return np.array(entries).reshape(3, 3)
     return np.stack(entries, axis=-1).reshape((*x.shape, 3, 3))
 
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import socket
 from pathlib import Path
-from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from ..exchange import Exchange, check_free, find_free_port
 from ..program import Program
 from ..readings import Readings
 from ..rotor_map import Place
-from ..session import Recorder, Session
+from ..session import Link, describe_session
 from ..sticks import StickPilot, Sticks
 from ..strict import StrictExchange, describe_preload
 from . import frames
@@ -25,7 +24,7 @@ from .msp import Msp
 from .packets import RAW_PORT, Ports, pack_radio, pack_state, read_motors
 from .parameters import COMMANDS, DEFAULTS, IDLE, MAX_ANGLE, MAX_YAW_RATE, write_parameters
 
-_ARM, _SPIN_UP = 1.5, 0.05  # s before the flight
+_ARM = 1.5  # s before the flight
 _LOGGED = ("roll", "pitch", "yaw", "throttle", "arming_switch", "armed")
 _STILL = (0.0, 0.0, 0.0, 0.0)
 _DISARMED = 0.1  # s without output after which an armed autopilot counts as disarmed
@@ -86,8 +85,7 @@ class Betaflight(Autopilot):
         self._where = where or {}
         self._program: Optional[Program] = None
         self._exchange: Optional[Exchange] = None
-        self._recorder: Optional[Recorder] = None
-        self._flight_exchange: Union[Exchange, Recorder, Session, None] = None
+        self._flight_exchange: Optional[Link] = None
         self.log.update(dict.fromkeys(_LOGGED, math.nan))
         self._settings = {"hold": hold, **others}
         self._pilot: Optional[StickPilot] = None
@@ -120,11 +118,8 @@ class Betaflight(Autopilot):
         else:
             self._program = Program()
             (self._start_strict if self._is_strict else self._start_plain)(self._program)
-            self._flight_exchange = self._exchange
-            if self.record is not None and self._exchange is not None:
-                about = self._describe_session()
-                self._recorder = Recorder(self._exchange, self.record, about)
-                self._flight_exchange = self._recorder
+            assert self._exchange is not None
+            self._flight_exchange = self.record_link(self._exchange, self._describe_session())
         self._first: Optional[np.ndarray] = None
         self._sticks: Optional[Sticks] = None
         self._off_since: Optional[float] = None
@@ -160,10 +155,8 @@ class Betaflight(Autopilot):
         assert self._pilot is not None
         if t < -_ARM:
             return Sticks()
-        if t < -_SPIN_UP:
+        if t < 0:  # without throttle, the integrators of an autopilot that is held tilted stay 0
             return Sticks(is_armed=True)
-        if t < 0:
-            return self._pilot.hover
         if self._own_pilot is not None:
             return self._own_pilot(t, state, reference)
         if reference is None:
@@ -176,9 +169,7 @@ class Betaflight(Autopilot):
 
     def close(self) -> None:
         """End the program, and remove its folder."""
-        if self._recorder is not None:
-            self._recorder.write()
-            self._recorder = None
+        super().close()
         if self._exchange is not None:
             self.summary = self._exchange.summarize()
             self._exchange.close()
@@ -190,10 +181,10 @@ class Betaflight(Autopilot):
     def _start_strict(self, program: Program) -> None:
         """Start the program with a clock that quadcore controls, and with ports of its own."""
         self._exchange = exchange = StrictExchange(program, self.period)
-        self.ports = _find_free_ports()._replace(motors=exchange.port)
+        self.ports = _find_free_ports()
         replaced = {**dict(zip(Ports(), self.ports)), RAW_PORT: 0}
         self._write_parameters(self._command, describe_preload(replaced))
-        program.start(self._command, *exchange.describe_environment(replaced))
+        program.start(self._command, *exchange.describe_environment(replaced, Ports().motors))
         exchange.begin(lambda reason: self.fail(-self.hold, reason))
 
     def _start_plain(self, program: Program) -> None:
@@ -219,19 +210,12 @@ class Betaflight(Autopilot):
         write_parameters(self._program, command, environment, *given)
 
     def _describe_session(self) -> Dict[str, Any]:
-        if self._own_pilot is not None:
+        if self._own_pilot is not None and self.record is not None:
             raise InputError(
                 "--record: a flight with your own pilot cannot be recorded. Leave out --record."
             )
         program = Path(self._command[0])
-        return {
-            "autopilot": "betaflight",
-            "settings": self._settings,
-            "program": program.name,
-            "sha256": hashlib.sha256(program.read_bytes()).hexdigest(),
-            "parameters": self._parameters,
-            "words": list(self.words),
-        }
+        return describe_session("betaflight", program, self._settings, self._parameters)
 
     def _check_armed(self, t: float, outputs: Sequence[float]) -> None:
         """Raise `FlightError` if the autopilot is not armed in flight."""
