@@ -4,6 +4,7 @@ A stack file (YAML) describes an autopilot; `read_autopilot` makes a controller 
 is the base class of bridges to other stacks.
 """
 
+from .ardupilot import ArduPilot
 from .autopilot import Autopilot
 from .betaflight.betaflight import Betaflight
 from .crazyflie import Crazyflie
@@ -11,4 +12,12 @@ from .readings import Readings
 from .stacks import read_autopilot
 from .sticks import Sticks
 
-__all__ = ["Autopilot", "Betaflight", "Crazyflie", "Readings", "Sticks", "read_autopilot"]
+__all__ = [
+    "ArduPilot",
+    "Autopilot",
+    "Betaflight",
+    "Crazyflie",
+    "Readings",
+    "Sticks",
+    "read_autopilot",
+]

@@ -84,16 +84,8 @@ class Exchange:
         repeated, has_warned = False, False
         self._socket.sendto(packet, (HOST, port))
         while not self._poll.poll(_AGAIN * 1000):
-            self._program.read_messages()
-            if self._program.has_ended():
-                raise fail(self._program.describe_end())
+            has_warned = self._look(began, has_warned, fail)
             now = time.perf_counter()
-            if now - began > PATIENCE and not has_warned:
-                warn(
-                    f"The autopilot has not answered for {PATIENCE:g} s. quadcore waits for it. "
-                    f"{self._program.describe_messages()}"
-                )
-                has_warned = True
             if now - asked >= _AGAIN:
                 self._socket.sendto(packet, (HOST, port))
                 self.repeated += 1
@@ -103,6 +95,13 @@ class Exchange:
         if repeated:
             self.discard()
         return answer
+
+    def wait_for_sender(self, fail: Callable[[str], Exception]) -> int:
+        """Wait for a first packet of the program, and return the port from which it was sent."""
+        began, has_warned = time.perf_counter(), False
+        while not self._poll.poll(_AGAIN * 1000):
+            has_warned = self._look(began, has_warned, fail)
+        return int(self._socket.recvfrom(65536)[1][1])
 
     def discard(self) -> None:
         """Discard answers that arrive within a short time."""
@@ -122,6 +121,19 @@ class Exchange:
     def close(self) -> None:
         """Close the socket."""
         self._socket.close()
+
+    def _look(self, began: float, has_warned: bool, fail: Callable[[str], Exception]) -> bool:
+        """Fail if the program has ended, warn once if it is silent, and return whether it was."""
+        self._program.read_messages()
+        if self._program.has_ended():
+            raise fail(self._program.describe_end())
+        if time.perf_counter() - began <= PATIENCE or has_warned:
+            return has_warned
+        warn(
+            f"The autopilot has not answered for {PATIENCE:g} s. quadcore waits for it. "
+            f"{self._program.describe_messages()}"
+        )
+        return True
 
 
 def check_free(kind: int, port: int) -> None:

@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, NamedTuple, Sequence, Union
 
 from .._core import InputError
 from ..support.user_code import find_controller
+from .ardupilot import ArduPilot
 from .autopilot import Autopilot
 from .betaflight.betaflight import Betaflight
 from .crazyflie import Crazyflie
@@ -30,6 +31,12 @@ class Stack(NamedTuple):
 
 
 STACKS: Dict[str, Stack] = {
+    "ardupilot": Stack(
+        "ArduPilot SITL by JSON over UDP, stick pilot; never tried with the program",
+        ArduPilot,
+        False,
+        ("arguments",),
+    ),
     "betaflight": Stack(
         "Betaflight SITL over UDP, level mode with stick pilot",
         Betaflight,

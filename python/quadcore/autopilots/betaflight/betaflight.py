@@ -11,6 +11,7 @@ import numpy as np
 
 from ..._core import FlightError, InputError
 from ...control.vehicle import Vehicle
+from ..arming import ArmingWatch
 from ..autopilot import Autopilot
 from ..exchange import Exchange, check_free, find_free_port
 from ..program import Program
@@ -27,7 +28,6 @@ from .parameters import COMMANDS, DEFAULTS, IDLE, MAX_ANGLE, MAX_YAW_RATE, write
 _ARM = 1.5  # s before the flight
 _LOGGED = ("roll", "pitch", "yaw", "throttle", "arming_switch", "armed")
 _STILL = (0.0, 0.0, 0.0, 0.0)
-_DISARMED = 0.1  # s without output after which an armed autopilot counts as disarmed
 
 OwnPilot = Callable[[float, Any, Any], Sticks]
 
@@ -122,7 +122,7 @@ class Betaflight(Autopilot):
             self._flight_exchange = self.record_link(self._exchange, self._describe_session())
         self._first: Optional[np.ndarray] = None
         self._sticks: Optional[Sticks] = None
-        self._off_since: Optional[float] = None
+        self._watch = ArmingWatch(self.fail, self._quote_messages)
 
     def tick(self, readings: Readings, sticks: Sticks) -> Sequence[float]:
         """Send the radio's channels and the state, and wait for the outputs."""
@@ -147,7 +147,7 @@ class Betaflight(Autopilot):
             raise fail(problem)
         is_armed = max(outputs) > IDLE / 2
         self.log.update(zip(_LOGGED, map(float, (*sticks, is_armed))))
-        self._check_armed(readings.time, outputs)
+        self._watch.check(readings.time, sticks.is_armed, is_armed)
         return [max(0.0, min(1.0, output)) for output in outputs]
 
     def pilot(self, t: float, state: Any, reference: Any) -> Sticks:
@@ -216,19 +216,6 @@ class Betaflight(Autopilot):
             )
         program = Path(self._command[0])
         return describe_session("betaflight", program, self._settings, self._parameters)
-
-    def _check_armed(self, t: float, outputs: Sequence[float]) -> None:
-        """Raise `FlightError` if the autopilot is not armed in flight."""
-        assert self._sticks is not None
-        if t < 0 or not self._sticks.is_armed or max(outputs) > IDLE / 2:
-            self._off_since = None
-            return
-        if self._off_since is None:
-            self._off_since = t
-        if t == 0:
-            raise self.fail(t, f"the autopilot did not arm. {self._quote_messages()}")
-        if t - self._off_since >= _DISARMED:
-            raise self.fail(self._off_since, f"the autopilot disarmed. {self._quote_messages()}")
 
     def _quote_messages(self) -> str:
         return "" if self._program is None else self._program.describe_messages()
