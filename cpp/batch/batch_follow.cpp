@@ -135,7 +135,6 @@ batch::Follower Batch::Implementation::make_follower(std::size_t i, const batch:
           &errors,
           seed_of(i, sensor),
           placements_[i] * errors.draws(),
-          control::TotalVariation(common_.rotors()),
           control::TotalVariation(command_width())};
 }
 

@@ -18,7 +18,7 @@ struct Follower {
   const OdometryErrors* errors;
   std::uint64_t seed;  ///< of the odometry
   double draws;        ///< random numbers before the measurement at the start
-  control::TotalVariation rates, commands;
+  control::TotalVariation commands;
   bool has_left = false;  ///< whether it has left the lanes; its results are then incomplete
 
   /// Speeds in effect at the end; empty before the first command.

@@ -17,7 +17,11 @@ struct GuidedBlock::Control {
 };
 
 GuidedBlock::GuidedBlock(LaneBlocks& lanes, std::size_t block, double dt, double* work)
-    : lanes_(lanes), block_(block), dt_(dt), work_(work) {}
+    : lanes_(lanes),
+      block_(block),
+      dt_(dt),
+      work_(work),
+      rates_(lanes.rotors(), control::TotalVariation(widest_lanes)) {}
 GuidedBlock::~GuidedBlock() = default;
 
 void GuidedBlock::add(Follower& follower) {
@@ -56,21 +60,22 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n,
   for (Follower& follower : followers) add(follower);
   std::int64_t step = 0;
   lanes_.show(block_, work_);
-  for (Follower& follower : followers) {
-    log(follower, 0);
-    note_rates(follower);
-  }
+  for (const Follower& follower : followers) log(follower, 0);
+  note_rates();
   while (step < n) {
     const auto logged = static_cast<double>(std::min(n, (step / log_every + 1) * log_every));
     const auto next = static_cast<std::int64_t>(update(static_cast<double>(step), logged));
     for (; step < next; ++step) this->step(followers);
+    if (!lanes_.are_hinged()) lanes_.show(block_, work_);
     if (step % log_every != 0) continue;
     for (const Follower& follower : followers) {
       if (!follower.has_left) log(follower, static_cast<double>(step));
     }
   }
   for (const Follower& follower : followers) {
-    follower.guided->rate_variation = follower.rates.sums();
+    for (const control::TotalVariation& rates : rates_) {
+      follower.guided->rate_variation.push_back(rates.sums()[follower.lane()]);
+    }
     follower.guided->command_variation = follower.commands.sums();
   }
 }
@@ -95,22 +100,17 @@ double GuidedBlock::update(double step, double next) {
 void GuidedBlock::step(std::vector<Follower>& followers) {
   std::int64_t flown[widest_lanes];
   lanes_.step(block_, 1, dt_, work_, flown);
-  lanes_.show(block_, work_);
   for (Follower& follower : followers) {
-    if (flown[follower.lane()] == 0) {
-      drop(follower);
-    } else {
-      note_rates(follower);
-    }
+    if (flown[follower.lane()] == 0) drop(follower);
   }
+  note_rates();
 }
 
-void GuidedBlock::note_rates(Follower& follower) const {
-  double rates[most_rotors];
-  for (std::size_t i = 0; i < lanes_.rotors(); ++i) {
-    rates[i] = shown(StateRow::joint(StateRow::joint_rate, i), follower);
+void GuidedBlock::note_rates() {
+  const double* const rows = lanes_.find_rates(block_, work_);
+  for (std::size_t i = 0; i < rates_.size(); ++i) {
+    rates_[i].add(rows + StateRow::joint(StateRow::joint_rate, i) * widest_lanes);
   }
-  follower.rates.add(rates);
 }
 
 void GuidedBlock::drop(Follower& follower) {

@@ -33,7 +33,7 @@ class GuidedBlock {
   void log(const Follower& follower, double step) const;
   void drop(Follower& follower);
   void step(std::vector<Follower>& followers);
-  void note_rates(Follower& follower) const;
+  void note_rates();
   double shown(std::size_t row, const Follower& follower) const {
     return work_[row * widest_lanes + follower.lane()];
   }
@@ -50,7 +50,8 @@ class GuidedBlock {
   };
   std::vector<Shared> previews_;
   std::vector<LaneControls> in_lanes_;
-  std::vector<Control> alone_;  ///< controllers that are only for single vehicles
+  std::vector<Control> alone_;                  ///< controllers that are only for single vehicles
+  std::vector<control::TotalVariation> rates_;  ///< of the vehicles, for each rotor
 };
 
 /// Advance a simulation by n steps under a controller.

@@ -178,6 +178,12 @@ void LaneBlocks::show(std::size_t block, double* work) {
   if (!is_empty()) show_(view(block, work, nullptr), work);
 }
 
+const double* LaneBlocks::find_rates(std::size_t block, double* work) {
+  if (!are_hinged()) return state_.data() + block * state_rows() * widest_lanes;
+  show(block, work);
+  return work;
+}
+
 void LaneBlocks::show(std::size_t block, std::size_t vehicles, double* work, double* rows) {
   if (is_empty()) return;
   show(block, work);

@@ -17,6 +17,8 @@ class LaneBlocks {
              const World& world);
 
   std::size_t rotors() const { return rotors_; }
+  /// Return whether the states are those of bodies on hinges.
+  bool are_hinged() const { return hinged_ != nullptr; }
   std::size_t blocks() const { return flies_.size() / widest_lanes; }
   /// Return the number of values of a vehicle in show().
   std::size_t shown_rows() const { return StateRow::count(rotors_); }
@@ -42,6 +44,9 @@ class LaneBlocks {
   void set_engine_state(std::size_t vehicle, const std::vector<double>& state);
   /// Write the states of a block in rows of StateRow, but without the angles of hinged vehicles.
   void show(std::size_t block, double* work);
+  /// Return a table of StateRow of which the joint rates are those of the block.
+  /// \param work  written like show() if the vehicles are hinged, whose state has no joint rates
+  const double* find_rates(std::size_t block, double* work);
   /// Write the rows of Batch::get_state() for all vehicles of a block.
   void show(std::size_t block, std::size_t vehicles, double* work, double* rows);
 
@@ -67,7 +72,6 @@ class LaneBlocks {
     return table.data() + vehicle / widest_lanes * rows * widest_lanes + vehicle % widest_lanes;
   }
   bool is_empty() const { return state_.empty(); }
-  bool are_hinged() const { return hinged_ != nullptr; }
   std::size_t state_rows() const;
   std::size_t constant_rows() const;
   const double* constants_of(std::size_t vehicle) const {

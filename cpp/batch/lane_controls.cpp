@@ -1,15 +1,36 @@
 #include "lane_controls.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "actuation_law.hpp"
 #include "lanes/for_each_width.hpp"
+#include "measure_block.hpp"
 #include "numbers.hpp"
 #include "quadcore/lane_width.hpp"
+#include "quadcore/plugin/counts.hpp"
 
 namespace quadcore::batch {
+namespace {
 
 using control::size_of;
+
+/// Errors of each quantity, in the order of ErrorNumbers.
+std::array<VectorErrors, measured_quantities> list_errors(const OdometryErrors& errors) {
+  return {errors.position, errors.orientation, errors.linear_velocity, errors.angular_velocity};
+}
+
+/// Return whether the measurements of two sensors differ only by numbers.
+bool measure_alike(const OdometryErrors& a, const OdometryErrors& b) {
+  const auto of_a = list_errors(a), of_b = list_errors(b);
+  return std::equal(of_a.begin(), of_a.end(), of_b.begin(),
+                    [](const VectorErrors& one, const VectorErrors& other) {
+                      return (one.noise != 0) == (other.noise != 0) &&
+                             (one.resolution != 0) == (other.resolution != 0);
+                    });
+}
+
+}  // namespace
 
 void PackTable::fill(const double* column) {
   for (std::size_t part = 0; part < widest_lanes / width_; ++part) {
@@ -24,12 +45,14 @@ LaneControls::LaneControls(const Follower& like,
     : like_(std::move(controller)),
       rate_(like.guide->rate),
       delay_(like.guide->delay),
+      errors_(like.errors),
       rotors_(like_->rotors),
       width_(lane_width(widest_lanes)),
       schedule_(rate_, delay_, rotors_ * widest_lanes),
       pending_(schedule_.state_size()),
       law_(width_, like_->law.numbers.size()),
       actuators_(width_, like_->actuators.size()),
+      sensors_(width_, size_of<ErrorNumbers>),
       measured_(width_, size_of<control::MeasuredNumbers>),
       wanted_(width_, size_of<control::WantedNumbers>),
       state_(width_, like_->state.size()),
@@ -39,7 +62,7 @@ LaneControls::LaneControls(const Follower& like,
 bool LaneControls::takes(const Follower& follower,
                          const control::LaneController& controller) const {
   return follower.guide->rate == rate_ && follower.guide->delay == delay_ &&
-         control::are_alike(*like_, controller);
+         control::are_alike(*like_, controller) && measure_alike(*errors_, *follower.errors);
 }
 
 void LaneControls::add(Follower& follower, const control::LaneController& controller,
@@ -49,6 +72,14 @@ void LaneControls::add(Follower& follower, const control::LaneController& contro
   law_.put(lane, controller.law.numbers.data());
   actuators_.put(lane, controller.actuators.data());
   state_.put(lane, controller.state.data());
+  ErrorNumbers<double> errors{};
+  const auto listed = list_errors(*follower.errors);
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    errors.noise[i] = listed[i].noise;
+    errors.resolution[i] = listed[i].resolution;
+  }
+  sensors_.put(lane, control::list_numbers(errors).data());
+  seeds_[lane] = follower.seed;
 }
 
 void LaneControls::command(double step, double dt, double period, const double* shown,
@@ -69,17 +100,24 @@ void LaneControls::command(double step, double dt, double period, const double* 
 }
 
 void LaneControls::measure(double step, const double* shown) {
+  static constexpr laws::ForEachWidth<void(const MeasureBlock&)> measures{
+      &measure_block<1>, &measure_block<2>, &measure_block<4>, &measure_block<8>};
   for (const Member& member : members_) {
     const Follower& follower = *member.follower;
-    const OdometryErrors& errors = *follower.errors;
-    const auto measured = control::numbers_of(batch::measure(
-        shown + member.lane, errors, follower.seed, follower.draws + step * errors.draws()));
-    measured_.put(member.lane, reinterpret_cast<const double*>(&measured));
+    counts_[member.lane] = count_of(follower.draws + step * follower.errors->draws());
   }
+  MeasureBlock block{shown, {}, {}, sensors_.data(), seeds_, counts_, measured_.data()};
+  const auto errors = list_errors(*errors_);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    block.is_noisy[i] = errors[i].noise != 0;
+    block.is_quantised[i] = errors[i].resolution != 0;
+  }
+  measures[width_](block);
 }
 
 void LaneControls::read_references(double step, double dt) {
-  const auto list_times = [&](double* times, std::size_t count) {
+  // Made once, because it allocates memory.
+  const control::ReferencePreview::ListTimes list_times = [&](double* times, std::size_t count) {
     double at = step;
     for (std::size_t i = 0; i < count; ++i) {
       times[i] = at * dt;
@@ -115,10 +153,9 @@ void LaneControls::call(double period) {
                  measured_.data(), wanted_.data(), state_.data(), demand_.data(), speeds_.data(),
                  complete});
   has_begun_ = true;
-  std::vector<double> state, speeds(rotors_);
   for (const Member& member : members_) {
     if (complete[member.lane] != 0 || member.follower->has_left) continue;
-    state.resize(like_->state.size());
+    std::vector<double> state(like_->state.size()), speeds(rotors_);
     control::DemandNumbers<double> demand{};
     demand_.get(member.lane, reinterpret_cast<double*>(&demand));
     state_.get(member.lane, state.data());

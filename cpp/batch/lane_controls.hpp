@@ -85,12 +85,14 @@ class LaneControls {
 
   std::shared_ptr<const control::LaneController> like_;
   double rate_, delay_;
+  const OdometryErrors* errors_;  ///< of the first follower
   std::size_t rotors_;
   int width_;
   std::vector<Member> members_;
   control::Schedule schedule_;
   std::vector<double> pending_;
-  PackTable law_, actuators_, measured_, wanted_, state_, demand_, speeds_;
+  PackTable law_, actuators_, sensors_, measured_, wanted_, state_, demand_, speeds_;
+  std::uint64_t seeds_[widest_lanes] = {}, counts_[widest_lanes] = {};
   bool has_begun_ = false;
 };
 

@@ -6,9 +6,10 @@
 #include <limits>
 
 #include "argument_reduction.hpp"
+#include "lanes/logarithm.hpp"
 #include "lanes/sine_cosine.hpp"
 
-// The minimax polynomials are those of fdlibm 5.3 (Sun Microsystems, 1993, s_atan.c, e_log.c,
+// The minimax polynomials are those of fdlibm 5.3 (Sun Microsystems, 1993, s_atan.c,
 // e_exp.c at netlib.org/fdlibm), whose files derive them and bound their errors; splitting the
 // argument in two follows W. J. Cody, W. Waite, "Software Manual for the Elementary Functions",
 // 1980.
@@ -22,8 +23,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-constexpr double ln2_high = 6.93147180369123816490e-01;  // 32 bits: a whole multiple is exact
-constexpr double ln2_low = 1.90821492927058770002e-10;
+using laws::ln2_high;
+using laws::ln2_low;
 
 /// Return the arc tangent of x >= 0.
 double atan_of_positive(double x) {
@@ -96,31 +97,12 @@ double asin(double x) { return std::abs(x) <= 1 ? atan2(x, std::sqrt((1 - x) * (
 double log(double x) {
   if (!(x > 0)) return x == 0 ? -infinity : nan;
   if (std::isinf(x)) return x;
-  int k = 0;
+  double k = 0;
   if (x < std::numeric_limits<double>::min()) {  // subnormal
     x *= 18014398509481984.0;                    // 2^54
     k = -54;
   }
-  // x = 2^k (1 + f), sqrt(2)/2 < 1 + f < sqrt(2)
-  std::uint64_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  const std::uint64_t mantissa = bits & 0xFFFFFFFFFFFFFu;
-  const bool upper = mantissa > 0x6A09E667F3BCCu;  // of sqrt(2)
-  k += static_cast<int>(bits >> 52) - (upper ? 1022 : 1023);
-  bits = mantissa | (upper ? 0x3FE0000000000000u : 0x3FF0000000000000u);
-  double f;
-  std::memcpy(&f, &bits, sizeof f);
-  f -= 1;
-  const double s = f / (2 + f);
-  const double z = s * s;
-  const double w = z * z;
-  const double R = z * (6.666666666666735130e-01 +
-                        w * (2.857142874366239149e-01 +
-                             w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01))) +
-                   w * (3.999999999940941908e-01 +
-                        w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
-  const double half_square = 0.5 * f * f;
-  return k * ln2_high - ((half_square - (s * (half_square + R) + k * ln2_low)) - f);
+  return laws::logarithm(x, k);
 }
 
 double exp(double x) {
