@@ -67,6 +67,9 @@ def test_readings_have_the_units_and_signs_of_the_firmware():
     [
         ("parameters: {kp_xx: 1}\n", "controllerMellinger_t has no 'kp_xx'. Did you mean 'kp_xy'"),
         ("parameters: {kp_xy: much}\n", "crazyflie.yaml:3: kp_xy is much. Write a number."),
+        ("hold: 601\n", "crazyflie.yaml:3: hold is 601. Use 0 to 600 s."),
+        ("hold: -1\n", "crazyflie.yaml:3: hold is -1. Use 0 to 600 s."),
+        ("hold: nan\n", "crazyflie.yaml:3: hold is not a number. Write one."),
         ("lockstep: strict\n", "yaml:3: lockstep: autopilot crazyflie does not use it. Leave it"),
     ],
 )
@@ -84,5 +87,7 @@ def test_a_module_that_is_missing_or_broken_is_one_line(tmp_path):
 
 
 def test_the_class_is_a_controller():
+    with pytest.raises(qc.InputError, match=r"^hold is nan. Use 0 to 600 s."):
+        Crazyflie(str(STAND_IN), hold=float("nan"))
     log = fly(Crazyflie(str(STAND_IN), {"kp_z": "2"}), 0.5, "hover")
     assert log.position[-1] == pytest.approx([0, 0, 10], abs=0.005)

@@ -70,10 +70,8 @@ class ArduPilot(Autopilot):
         Parameters of ArduPilot by name, which are given as its defaults and not read back.
     hold : float, default 30
         Duration of the phase before the flight, s, in which the estimator settles.
-    motor_curve, rotors, imu
+    motor_curve, rotors, imu, where
         As for `Autopilot`.
-    where : mapping of str to str, default {}
-        ``FILE:LINE`` of the values in a stack file, by name, for messages.
     """
 
     # libraries/AP_Motors, frame class QUAD, type X
@@ -88,7 +86,7 @@ class ArduPilot(Autopilot):
         where: Optional[Mapping[str, str]] = None,
         **others: Any,
     ) -> None:
-        super().__init__(hold=hold, **others)
+        super().__init__(hold=hold, where=where, **others)
         self._command = [program, *arguments]
         self._parameters = {**DEFAULTS, **(parameters or {})}
         self._settings = {"hold": hold, **others}
@@ -97,7 +95,7 @@ class ArduPilot(Autopilot):
         self.log["armed"] = math.nan
         if hold < _ARM:
             raise InputError(
-                f"{(where or {}).get('hold', '')}hold is {hold:g}, but ArduPilot arms {_ARM:g} s "
+                f"{self._where.get('hold', '')}hold is {hold:g}, but ArduPilot arms {_ARM:g} s "
                 "before the flight. Give more."
             )
 

@@ -15,6 +15,9 @@ from .readings import Readings, Sensors, read_held
 from .rotor_map import Channel, Place, check_reaction, map_channels
 from .session import Link, Recorder, Session
 
+MAX_HOLD = 600.0
+"""Longest phase before the flight, s."""
+
 
 class Autopilot:
     """Controller that asks a program outside quadcore, in lockstep.
@@ -36,7 +39,9 @@ class Autopilot:
     imu : str, default ""
         Topic of the IMU. Default: ideal readings of the state.
     hold : float, default 0
-        Duration of the phase before the flight, s.
+        Duration of the phase before the flight, s, up to `MAX_HOLD`.
+    where : mapping of str to str, default {}
+        ``FILE:LINE: `` of the values in a stack file, by name, for messages.
 
     Attributes
     ----------
@@ -81,9 +86,15 @@ class Autopilot:
         rotors: Sequence[str] = (),
         imu: str = "",
         hold: float = 0.0,
+        where: Optional[Mapping[str, str]] = None,
     ) -> None:
         self.motor_curve, self.rotors, self.imu = motor_curve, tuple(rotors), imu
         self.hold = hold
+        self._where = where or {}
+        if not 0 <= hold <= MAX_HOLD:
+            raise InputError(
+                f"{self._where.get('hold', '')}hold is {hold:g}. Use 0 to {MAX_HOLD:g} s."
+            )
         self.channels: List[Channel] = []
         self.record: Optional[Path] = None
         self.session: Optional[Session] = None

@@ -59,10 +59,8 @@ class Crazyflie(Autopilot):
     motor_curve, default "thrust"
         As for `Autopilot`. The firmware compensates the voltage of the battery, so that its outputs
         are proportional to thrust.
-    rotors, hold
+    rotors, imu, hold, where
         As for `Autopilot`.
-    where : mapping of str to str, default {}
-        ``FILE:LINE: `` of the values in a stack file, by name, for messages.
     """
 
     # src/modules/src/power_distribution_quadrotor.c, powerDistributionForceTorque
@@ -78,10 +76,9 @@ class Crazyflie(Autopilot):
         where: Optional[Mapping[str, str]] = None,
         **others: Any,
     ) -> None:
-        super().__init__(motor_curve=motor_curve, **others)
+        super().__init__(motor_curve=motor_curve, where=where, **others)
         self._program = Path(program)
         self._parameters = dict(parameters or {})
-        self._where = where or {}
         self._settings = {"motor_curve": motor_curve, **others}
         self._link: Optional[Link] = None
 

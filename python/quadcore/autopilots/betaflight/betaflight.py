@@ -56,10 +56,8 @@ class Betaflight(Autopilot):
         "strict" preloads a library that controls the clock of the program: flights are
         bit-identical and several may run at once. "plain" exchanges packets with a program on
         its own clock.
-    motor_curve, rotors, imu
+    motor_curve, rotors, imu, where
         As for `Autopilot`.
-    where : mapping of str to str, default {}
-        ``FILE:LINE`` of the values in a stack file, by name, for messages.
     """
 
     # motors 1 to 4 of the mixer QUADX, src/main/flight/mixer_init.c
@@ -77,12 +75,11 @@ class Betaflight(Autopilot):
         where: Optional[Mapping[str, str]] = None,
         **others: Any,
     ) -> None:
-        super().__init__(hold=hold, **others)
+        super().__init__(hold=hold, where=where, **others)
         self._command = [program, *arguments]
         self._parameters = {**DEFAULTS, **(parameters or {})}
         self._lines = [*COMMANDS, *commands]
         self._own_pilot = pilot
-        self._where = where or {}
         self._program: Optional[Program] = None
         self._exchange: Optional[Exchange] = None
         self._flight_exchange: Optional[Link] = None
