@@ -1,5 +1,6 @@
 """ArduPilot's bridge against a stand-in that speaks its JSON interface."""
 
+import hashlib
 import json
 import sys
 from pathlib import Path
@@ -121,10 +122,14 @@ def test_an_autopilot_that_ends_at_once_is_exit_status_3(tmp_path):
 def test_a_session_is_repeated_without_the_program(tmp_path):
     path, stack = tmp_path / "session.qcs", write_stack(tmp_path)
     done = run_command(
-        *[*FLIGHT, "--duration", "0.3", "--controller", str(stack), "--reference", "step:dx=1"],
+        *[*FLIGHT[:-1], "--duration", "0.3", "--controller", str(stack)],
+        *["--reference", "step:dx=1"],
         *["--record", str(path)],
     )
     assert done.returncode == 0, done.stderr
+    digest = hashlib.sha256(Path(sys.executable).read_bytes()).hexdigest()[:12]
+    assert f"{Path(sys.executable).name}, SHA-256 {digest}" in done.stdout
+    assert "0 questions repeated" in done.stdout and " times real time" in done.stdout
     stack.unlink()
     assert "bit-identical" in run_command("autopilot", "replay", str(path)).stdout
 

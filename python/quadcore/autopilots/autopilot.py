@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
 from typing import Any, Callable, List, Mapping, Optional, Sequence
 
@@ -66,6 +67,8 @@ class Autopilot:
         under the topic ``controller``.
     summary : str
         Description of the answers of the last flight, with their durations.
+    program_summary : str
+        Name and SHA-256 of the program of the last flight.
     """
 
     pilot_rate = 100.0
@@ -78,6 +81,7 @@ class Autopilot:
     fixed_rate = True
     delay: float = 0.0
     summary = ""
+    program_summary = ""
 
     def __init__(
         self,
@@ -100,6 +104,7 @@ class Autopilot:
         self.session: Optional[Session] = None
         self.words: Sequence[str] = ()
         self._recorder: Optional[Recorder] = None
+        self._elapsed = self._began = 0.0  # s; simulated and wall-clock time
         self._names = [f"output{i}" for i in range(1, len(self.layout) + 1)]
         self.log = dict.fromkeys(self._names, math.nan)
 
@@ -164,6 +169,7 @@ class Autopilot:
         about : mapping
             Description of the flight; see `describe_session`.
         """
+        self.program_summary = f"{about['program']}, SHA-256 {about['sha256'][:12]}"
         if self.record is None:
             return link
         self._recorder = Recorder(link, self.record, {**about, "words": list(self.words)})
@@ -188,6 +194,7 @@ class Autopilot:
         for k in range(held_ticks, 0, -1):
             self._ask(held._replace(time=-k * self.period), None, None)
         self._begin, self._ticks = simulation.time, 0
+        self._elapsed, self._began = 0.0, time.perf_counter()
 
     def prepare(self, simulation: Any) -> None:
         """Map the channels to the rotors of a simulation, and read its motor curve.
@@ -211,8 +218,8 @@ class Autopilot:
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
         """Return the rotor speeds that the autopilot commands, rad/s."""
-        elapsed = t - self._begin
-        outputs = self._ask(self._sensors.read(elapsed), state, reference)
+        self._elapsed = t - self._begin
+        outputs = self._ask(self._sensors.read(self._elapsed), state, reference)
         speeds = np.empty(len(self._order))
         speeds[self._order] = self._signs * self.curve.find_speeds(outputs)
         return speeds
@@ -226,6 +233,12 @@ class Autopilot:
             raise self.fail(readings.time, f"the autopilot answered with outputs {outputs}")
         self.log.update(zip(self._names, outputs))
         return np.array(outputs)
+
+    def describe_speed(self) -> str:
+        """Return the speed of the flight, without the phase before it, as a share of real time."""
+        if self._elapsed == 0:
+            return "no flight"
+        return f"{self._elapsed / (time.perf_counter() - self._began):.1f} times real time"
 
     def fail(self, t: float, reason: str) -> FlightError:
         """Make the error that ends a flight at a time (s) for a reason."""

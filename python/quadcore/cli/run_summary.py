@@ -74,6 +74,8 @@ def summarize(
         )
         if pilot.summary:
             result["answers"] = pilot.summary
+        if pilot.program:
+            result["program"] = pilot.program
     return result
 
 
@@ -122,8 +124,7 @@ def _describe_control(result: Dict[str, Any]) -> List[Tuple[str, str]]:
     if result["updates"]:
         saturated = f"{result['saturated_updates']} of {result['updates']}"
         rows.append(("saturated updates", saturated))
-    if "answers" in result:
-        rows.append(("answers", result["answers"]))
+    rows += [(name, result[name]) for name in ("program", "answers") if name in result]
     return rows
 
 

@@ -100,6 +100,11 @@ class ControllerPilot(ReferencePilot):
         return str(getattr(self._controller, "summary", ""))
 
     @property
+    def program(self) -> str:
+        """Program outside quadcore that was the controller; "" for most controllers."""
+        return str(getattr(self._controller, "program_summary", ""))
+
+    @property
     def variation(self) -> Tuple[np.ndarray, np.ndarray]:
         """Total variation over all steps of joint rates (rotors,) and of commands (n,), rad/s."""
         if self._loop is None:

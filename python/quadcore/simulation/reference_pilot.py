@@ -72,7 +72,7 @@ class PluginPilot(ReferencePilot):
     rate = delay = saturated = math.nan
     updates = 0
     is_vectorized = False
-    summary = ""
+    summary = program = ""
     variation: Optional[Tuple[np.ndarray, np.ndarray]] = None
     seconds: Sequence[float] = ()
     estimate_errors: Optional[np.ndarray] = None

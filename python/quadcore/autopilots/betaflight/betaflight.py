@@ -168,7 +168,7 @@ class Betaflight(Autopilot):
         """End the program, and remove its folder."""
         super().close()
         if self._exchange is not None:
-            self.summary = self._exchange.summarize()
+            self.summary = f"{self._exchange.summarize()}, {self.describe_speed()}"
             self._exchange.close()
             self._exchange = None
         if self._program is not None:
