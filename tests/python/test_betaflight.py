@@ -154,16 +154,12 @@ def test_nothing_remains_of_a_simulator_that_is_killed(tmp_path):
 
 
 def test_a_port_that_is_taken_is_bad_input(tmp_path):
+    stack = write_stack(tmp_path, ports="9002, 9003, 9004, 5761")  # Betaflight's own
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
-        other.bind(("127.0.0.1", 0))
-        port = other.getsockname()[1]
-        stack = write_stack(tmp_path)
-        autopilot = read_autopilot(stack)
-        with pytest.raises(qc.InputError, match=f"UDP port {port}: Address already in use. End"):
-            from quadcore.autopilots.exchange import Exchange
-
-            Exchange(None, port)
-        del autopilot
+        other.bind(("127.0.0.1", 9002))
+        done = run_command("run", "iris", "--controller", str(stack), "--reference", "hover")
+    assert done.returncode == 2
+    assert "error: UDP port 9002: Address already in use. End the other autopilot" in done.stderr
 
 
 def test_a_slow_autopilot_is_waited_for_with_a_warning(tmp_path):
