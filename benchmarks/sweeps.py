@@ -59,18 +59,26 @@ def row_against_flight() -> None:
     print(f"a row : sim.run() of its flight   {statistics.median(ratios):.2f}   (limit 1.3)")
 
 
+def seconds(swept: Plan, processes: int) -> np.ndarray:
+    """Return the wall-clock time of a sweep and the processor times of parent and workers, s."""
+    used = os.times()
+    with tempfile.TemporaryDirectory() as folder:
+        wall = taken(lambda: fly_plan(swept, Path(folder), processes=processes))
+    parent, workers = (sum(os.times()[i : i + 2]) - sum(used[i : i + 2]) for i in (0, 2))
+    return np.array([wall, parent, workers])
+
+
 def two_against_one() -> None:
     """By the wall clock, and as if nothing else ran: there the parent waits for no one."""
     swept = plan(ROWS, "geometric", "circle")
 
-    def seconds(processes: int) -> np.ndarray:
-        used = os.times()
-        with tempfile.TemporaryDirectory() as folder:
-            wall = taken(lambda: fly_plan(swept, Path(folder), processes=processes))
-        parent, flights = (sum(os.times()[i : i + 2]) - sum(used[i : i + 2]) for i in (0, 2))
-        return np.array([wall, parent + flights / processes])
+    def wall_and_undisturbed(processes: int) -> np.ndarray:
+        wall, parent, workers = seconds(swept, processes)
+        return np.array([wall, parent + workers / processes])
 
-    wall, undisturbed = np.median([seconds(1) / seconds(2) for _ in range(ROUNDS)], axis=0)
+    wall, undisturbed = np.median(
+        [wall_and_undisturbed(1) / wall_and_undisturbed(2) for _ in range(ROUNDS)], axis=0
+    )
     print(
         f"two processes : one, {ROWS} rows   {wall:.2f}, undisturbed {undisturbed:.2f}   "
         "(limit 1.9)"

@@ -46,18 +46,28 @@ def judge(way, dt, vehicles, fly, repeats=3):
     fly : callable
         Makes the whole flight; returns where the centre of mass is (m) at its end.
     """
-    steps = vehicles * round(DURATION / dt)
     fly()  # compiles, warms up
+    time, position = measure(fly, repeats)
+    tell(way, dt, vehicles, DURATION / time, dist(position, vehicle()["end"]))
+
+
+def measure(fly, repeats):
+    """Return the least processor time of several calls, s, and the last result."""
     times = []
     for _ in range(repeats):
         start = process_time()  # of all threads
-        position = fly()
+        result = fly()
         times.append(process_time() - start)
+    return min(times), result
+
+
+def tell(way, dt, vehicles, speed, error):
+    """Print a row: simulated seconds of each vehicle per second, and an error in m."""
     row = {
         "way": way,
         "dt": dt,
         "vehicles": vehicles,
-        "rate": steps / min(times),
-        "error": dist(position, vehicle()["end"]),
+        "rate": vehicles * speed / dt,
+        "error": error,
     }
     print(json.dumps(row), flush=True)

@@ -1,7 +1,7 @@
-"""Flies the same flight in quadcore and in its peers, each in an environment of its own.
+"""Flies the same flights in quadcore and in its peers, each in an environment of its own.
 
-Prints, for each way to fly it, vehicle-steps per second of processor time and how far from the
-exact end it ends.
+Prints, for each way to fly, vehicle-steps per second of processor time, how far from the exact end
+the flight in open loop ends, and how well the flight in closed loop tracks the spiral.
 """
 
 import json
@@ -12,6 +12,7 @@ import venv
 from pathlib import Path
 
 import numpy as np
+import spiral
 from flight import DURATION, phases
 from rich.console import Console
 from rich.table import Table
@@ -108,16 +109,16 @@ def last_line(text):
     return (text.strip().splitlines() or [""])[-1]
 
 
-def fly(python, program, numbers):
+def fly(python, script, numbers):
     """Rows that a program prints; none if it fails, which is said."""
-    command = [python, HERE / f"fly_{program}.py", json.dumps(numbers)]
+    command = [python, HERE / script, json.dumps(numbers)]
     one_core = {
         **os.environ,
         "OMP_NUM_THREADS": "1",
     }  # threads that wait by spinning take time, too
     done = subprocess.run(command, cwd=BUILD, env=one_core, capture_output=True, text=True)
     if done.returncode:
-        print(f"{program}: {last_line(done.stderr)}", file=sys.stderr)
+        print(f"{script}: {last_line(done.stderr)}", file=sys.stderr)
         return []
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
@@ -127,13 +128,23 @@ def main(chosen):
     numbers["end"] = end(numbers)
     programs = {"quadcore": (sys.executable, qc.__version__)}
     programs.update((peer, python_of(peer)) for peer in chosen or PEERS)
-    table = Table(title=f"The same flight of {DURATION:g} s; s: of processor time")
+    title = f"The same flight of {DURATION:g} s; s: of processor time"
+    print_table(title, "off at the end", "fly", programs, numbers)
+    title = f"The spiral of {spiral.DURATION:g} s, each with its own controller"
+    print_table(title, "RMS error", "track", programs, numbers)
+
+
+def print_table(title, error, task, programs, numbers):
+    """Fly a task in all programs that have it, and print the rows."""
+    table = Table(title=title)
     for heading in ("", "how"):
         table.add_column(heading)
-    for heading in ("step", "vehicles", "vehicle-steps/s", "flown s/s", "off at the end"):
+    for heading in ("step", "vehicles", "vehicle-steps/s", "flown s/s", error):
         table.add_column(heading, justify="right")
     for program, (python, version) in programs.items():
-        for row in fly(python, program, numbers) if python else []:
+        script = f"{task}_{program}.py"
+        has_it = python and (HERE / script).exists()
+        for row in fly(python, script, numbers) if has_it else []:
             table.add_row(
                 f"{program} {version}",
                 row["way"],
