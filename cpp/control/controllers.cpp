@@ -1,4 +1,7 @@
 #include "cascade.hpp"
+#include "firmware/crazyflie_pid.hpp"
+#include "firmware/mellinger.hpp"
+#include "firmware/px4.hpp"
 #include "geometric.hpp"
 #include "indi.hpp"
 #include "lqr.hpp"
@@ -32,6 +35,12 @@ const std::vector<ControllerInfo>& list_controllers() {
           {{"integral", 0}}),
       make_info<Lqr>("lqr",
                      "linear-quadratic regulator (LQR) around the reference, optimal in hover"),
+      make_info<CrazyfliePid>(
+          "crazyflie_pid", "PID cascade of the Crazyflie firmware with its gains", {{"lead", 0}}),
+      make_info<Mellinger>("mellinger",
+                           "Mellinger's controller as in the Crazyflie firmware with its gains",
+                           {{"lead", 0}}),
+      make_info<Px4>("px4", "multicopter cascade of PX4 with its gains", {{"lead", 0}}),
   };
   return all;
 }

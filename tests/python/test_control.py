@@ -14,7 +14,7 @@ import quadcore as qc
 from quadcore.control import controllers, references
 
 ROOT = Path(__file__).resolve().parents[2]
-FLYING = [name for name in controllers.NAMES if name != "pid_thesis"]
+FLYING = [n for n in controllers.NAMES if n not in ("pid_thesis", *controllers.FIRMWARE)]
 
 
 def at_slow(slow, **others):

@@ -1,7 +1,8 @@
 """Built-in controllers.
 
 Each function makes a controller, for example ``quadcore.controllers.geometric(kp_xy=4)``; its
-docstring lists the parameters. ``NAMES`` contains all names. `read_controller` reads a gains file.
+docstring lists the parameters. ``NAMES`` contains all names, ``FIRMWARE`` those of controllers with
+the gains of a firmware. `read_controller` reads a gains file.
 """
 
 from __future__ import annotations
@@ -214,24 +215,30 @@ def _make_function(
 
 _MAKERS = {entry[0]: _make_function(*entry) for entry in _core.controllers()}
 NAMES: Tuple[ControllerName, ...] = tuple(_MAKERS)
+FIRMWARE: Tuple[ControllerName, ...] = ("crazyflie_pid", "mellinger", "px4")
+"""Controllers with the gains of a firmware, which suit its vehicles only."""
 __all__ = [
+    "FIRMWARE",
     "NAMES",
     "BuiltInController",
+    "crazyflie_pid",
     "geometric",
     "indi",
     "lqr",
+    "mellinger",
     "parse",
     "pd",
     "pd_compensated",
     "pid",
     "pid_thesis",
+    "px4",
     "read_controller",
 ]  # fmt: skip
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from .keywords import Cascade, Geometric, Indi, Lqr
+    from .keywords import Cascade, CrazyfliePid, Geometric, Indi, Lqr, Mellinger, Px4
 
     def pd(**parameters: Unpack[Cascade]) -> BuiltInController: ...
     def pd_compensated(**parameters: Unpack[Cascade]) -> BuiltInController: ...
@@ -240,6 +247,9 @@ if TYPE_CHECKING:
     def geometric(**parameters: Unpack[Geometric]) -> BuiltInController: ...
     def indi(**parameters: Unpack[Indi]) -> BuiltInController: ...
     def lqr(**parameters: Unpack[Lqr]) -> BuiltInController: ...
+    def crazyflie_pid(**parameters: Unpack[CrazyfliePid]) -> BuiltInController: ...
+    def mellinger(**parameters: Unpack[Mellinger]) -> BuiltInController: ...
+    def px4(**parameters: Unpack[Px4]) -> BuiltInController: ...
 else:
 
     def __getattr__(name: str) -> Callable[..., BuiltInController]:

@@ -9,7 +9,18 @@ from typing import Literal, Optional, Sequence, TypedDict
 
 from .. import _core
 
-ControllerName = Literal["pd", "pd_compensated", "pid_thesis", "pid", "geometric", "indi", "lqr"]
+ControllerName = Literal[
+    "pd",
+    "pd_compensated",
+    "pid_thesis",
+    "pid",
+    "geometric",
+    "indi",
+    "lqr",
+    "crazyflie_pid",
+    "mellinger",
+    "px4",
+]
 ReferenceName = Literal[
     "hover",
     "step",
@@ -32,11 +43,9 @@ class Setup(TypedDict, total=False):
     belief: Optional[_core.Simulation]
 
 
-class VehicleModel(TypedDict, total=False):
-    """Parameters of the vehicle model inside a controller."""
+class CommonModel(TypedDict, total=False):
+    """Parameters of the vehicle model inside every controller."""
 
-    drag: bool
-    gyroscopic: bool
     lead: bool
     lead_time: float
     believed_mass: float
@@ -47,6 +56,13 @@ class VehicleModel(TypedDict, total=False):
     rate_damping: float
     slowest: float
     fastest: float
+
+
+class VehicleModel(CommonModel, total=False):
+    """Parameters of the model inside a controller that can compensate drag and gyroscopics."""
+
+    drag: bool
+    gyroscopic: bool
 
 
 class InnerLoopGains(VehicleModel, total=False):
@@ -118,6 +134,93 @@ class Lqr(Setup, VehicleModel, total=False):
     integral: bool
     feed_forward: bool
     flat_rates: bool
+
+
+class CrazyfliePid(Setup, CommonModel, total=False):
+    """Keyword arguments of the PID cascade of the Crazyflie firmware."""
+
+    pos_xy_kp: float
+    pos_xy_max: float
+    pos_z_kp: float
+    pos_z_ki: float
+    pos_z_max: float
+    vel_xy_kp: float
+    vel_xy_ki: float
+    vel_tilt_max: float
+    vel_z_kp: float
+    vel_z_ki: float
+    thrust_base: float
+    thrust_min: float
+    hover_count: float
+    att_rp_kp: float
+    att_rp_ki: float
+    att_rp_limit: float
+    att_yaw_kp: float
+    att_yaw_ki: float
+    att_yaw_kd: float
+    att_yaw_limit: float
+    rate_rp_kp: float
+    rate_rp_ki: float
+    rate_rp_kd: float
+    rate_rp_limit: float
+    rate_yaw_kp: float
+    rate_yaw_ki: float
+    rate_yaw_limit: float
+
+
+class Mellinger(Setup, CommonModel, total=False):
+    """Keyword arguments of Mellinger's controller of the Crazyflie firmware."""
+
+    force_xy_kp: float
+    force_xy_ki: float
+    force_xy_kd: float
+    force_xy_limit: float
+    force_z_kp: float
+    force_z_ki: float
+    force_z_kd: float
+    force_z_limit: float
+    moment_xy_kr: float
+    moment_xy_kw: float
+    moment_xy_kd: float
+    moment_z_kr: float
+    moment_z_kw: float
+    moment_z_ki: float
+    moment_z_limit: float
+    mass_thrust: float
+
+
+class Px4(Setup, CommonModel, total=False):
+    """Keyword arguments of the cascade of PX4."""
+
+    mpc_xy_p: float
+    mpc_z_p: float
+    mpc_xy_vel_p_acc: float
+    mpc_xy_vel_i_acc: float
+    mpc_xy_vel_d_acc: float
+    mpc_z_vel_p_acc: float
+    mpc_z_vel_i_acc: float
+    mpc_z_vel_d_acc: float
+    mpc_xy_vel_max: float
+    mpc_z_vel_max_up: float
+    mpc_z_vel_max_dn: float
+    mpc_tiltmax_air: float
+    mpc_thr_hover: float
+    mpc_thr_min: float
+    mpc_thr_max: float
+    mpc_veld_lp: float
+    mc_rp_p: float
+    mc_yaw_p: float
+    mc_yaw_weight: float
+    mc_rprate_max: float
+    mc_yawrate_max: float
+    mc_rprate_p: float
+    mc_rprate_i: float
+    mc_rprate_d: float
+    mc_yawrate_p: float
+    mc_yawrate_i: float
+    mc_yawrate_d: float
+    mc_rate_int_lim: float
+    imu_dgyro_cutoff: float
 
 
 class Hover(TypedDict, total=False):

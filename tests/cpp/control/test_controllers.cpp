@@ -1,4 +1,6 @@
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "euler_rates.hpp"
 #include "modelled_vehicles.hpp"
@@ -106,7 +108,10 @@ TEST_CASE("roll and pitch of the cascade have the poles of its gains, at any yaw
 
 TEST_CASE("every law brings an odd vehicle that the rotors obey at once to its place") {
   for (const ControllerInfo& info : list_controllers()) {
-    if (info.name == "pid_thesis") continue;
+    // The gains of the firmwares suit their own vehicles.
+    if (std::set<std::string>{"pid_thesis", "crazyflie_pid", "mellinger", "px4"}.count(info.name)) {
+      continue;
+    }
     CAPTURE(info.name);
     Ideal ideal(info.name, {});
     Reference wanted = at_rest();

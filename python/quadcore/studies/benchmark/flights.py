@@ -19,6 +19,8 @@ from ..table import count_outcomes
 from .definition import LATEST, Condition, Definition
 from .scores import Score, compute_scores, make_cells
 
+_GENERAL = [name for name in built_in.NAMES if name not in built_in.FIRMWARE]
+
 
 class Part(NamedTuple):
     """Flights of one vehicle in one condition."""
@@ -82,7 +84,7 @@ def benchmark(
     Parameters
     ----------
     controllers
-        As for `evaluate`. Default: all built-in controllers.
+        As for `evaluate`. Default: all built-in controllers but those of firmwares.
     version
         Version of the benchmark.
     vehicles, categories
@@ -196,7 +198,7 @@ def _make_plan(
     shapes: Any = {label: definition.references[label] for label in condition.references}
     with suppress_warnings():  # about the vehicles, which a version fixes
         return Plan(
-            list(built_in.NAMES) if controllers is None else controllers,
+            _GENERAL if controllers is None else controllers,
             shapes,
             [definition.engine],
             [vehicle],
