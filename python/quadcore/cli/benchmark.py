@@ -40,7 +40,9 @@ def register(commands: Any) -> None:
         help=f"version of the benchmark: {', '.join(VERSIONS)} (default: {LATEST})",
     )
     complete_from(version, VERSIONS)
-    options.add_controllers(parser, "controllers (default: all built-in ones but those of firmwares)")
+    options.add_controllers(
+        parser, "controllers (default: all built-in ones but those of firmwares)"
+    )
     for name, known in (("vehicle", list(latest.vehicles)), ("category", latest.categories)):
         chosen = find_group(parser, STUDY).add_argument(
             f"--{name}",

@@ -71,7 +71,7 @@ def show_judgement(judgement: Judgement) -> None:
         table.add_row(model, channel, unit, *(f"{number:.3g}" for number in numbers))
     console.print(table)
     count = len(judgement.windows.start)
-    console.print(f"{count} windows; the first 30 % of each flight gave its delay and trim", "")
+    console.print(f"{count} windows; the 10 s before each prediction gave its delay and trim", "")
 
 
 def show_replays(replays: Sequence[Replay]) -> None:

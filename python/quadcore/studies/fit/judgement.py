@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -25,7 +25,11 @@ from .windows import (
 
 CONSTANT = "constant velocity and rates"
 _CALIBRATED = 0.3
-"""First part of a flight, from which its trims come; the rest is judged."""
+"""First part of a flight that only gives trims; the rest is judged."""
+_MEMORY, _BLOCK = 10.0, 3.0
+"""Time before a block of windows that gives their trims, and the duration of a block, s."""
+_FEWEST = 5
+"""Windows that give trims; all earlier ones if `_MEMORY` contains fewer."""
 DECISIVE = 0.25
 """Horizon at which a model must be better than the baselines, s."""
 _COMPARED = {True: ("position", "attitude"), False: ("rates",)}
@@ -40,15 +44,12 @@ class Judgement(NamedTuple):
         RMS error of each model and baseline, by channel, in the units of `CHANNELS`.
     windows : Windows
         Judged windows.
-    trims : dict of str to ndarray (flights, trims)
-        Delay, factor of the speeds, and constant torques of each flight, by model.
     predicted : dict of str to ndarray
         States that the first model predicts.
     """
 
     errors: Dict[str, Dict[str, np.ndarray]]
     windows: Windows
-    trims: Dict[str, np.ndarray]
     predicted: Dict[str, np.ndarray]
 
     def list_rows(self) -> List[Tuple[str, str, str, List[float]]]:
@@ -82,8 +83,9 @@ def judge_models(
 ) -> Judgement:
     """Predict flights with models and with a baseline.
 
-    The first 30 % of each flight give its delay, its factor of the rotor speeds and its constant
-    torque, which depend on battery and trim. The rest is judged.
+    Delay, factor of the rotor speeds and constant torque depend on battery and trim, and drift. So
+    each prediction takes them from the 10 s before it. The first 30 % of a flight only serve for
+    this, the rest is judged.
 
     Parameters
     ----------
@@ -93,23 +95,42 @@ def judge_models(
         Prepared flights.
     """
     windows = make_windows(flights)
-    early = np.zeros(len(windows.start), bool)
-    for number in range(len(windows.flights)):
-        own = windows.flight == number
-        start = windows.start[own]
-        early[own] = start < start[0] + _CALIBRATED * (start[-1] - start[0])
-    judged = windows.choose(~early)
+    of_flights = [windows.choose_flight(number) for number in range(len(flights))]
+    judged = windows.choose(np.concatenate([w.start >= _find_begin(w) for w in of_flights]))
     errors: Dict[str, Dict[str, np.ndarray]] = {}
-    trims: Dict[str, np.ndarray] = {}
     first: Optional[Dict[str, np.ndarray]] = None
     for name, (fitted, values) in models.items():
-        trims[name] = calibrate_trims(Predictor(fitted, windows.choose(early)), dict(values))
-        [predicted] = Predictor(fitted, judged).predict([values], [trims[name]])
+        parts = [part for each in of_flights for part in _predict_blocks(fitted, values, each)]
+        predicted = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
         errors[name] = compute_rms(compute_errors(judged, predicted))
         first = predicted if first is None else first
     errors[CONSTANT] = compute_rms(compute_errors(judged, predict_constant(judged)))
     assert first is not None
-    return Judgement(errors, judged, trims, first)
+    return Judgement(errors, judged, first)
+
+
+def _find_begin(windows: Windows) -> float:
+    """Return the time from which the windows of a flight are judged, s."""
+    start = windows.start
+    return float(start[0] + _CALIBRATED * (start[-1] - start[0]))
+
+
+def _predict_blocks(
+    fitted: FittedModel, values: Mapping[str, float], windows: Windows
+) -> Iterator[Dict[str, np.ndarray]]:
+    """Yield the predictions of each block of judged windows of a flight."""
+    ends = windows.start + INSTANTS[-1]
+    begin = _find_begin(windows)
+    while begin <= windows.start[-1]:
+        own = (windows.start >= begin) & (windows.start < begin + _BLOCK)
+        if own.any():
+            before = ends <= begin
+            before = before if before.sum() >= _FEWEST else windows.start < begin
+            recent = before & (ends > begin - _MEMORY)
+            known = windows.choose(recent if recent.sum() >= _FEWEST else before)
+            trims = calibrate_trims(Predictor(fitted, known), dict(values))
+            yield Predictor(fitted, windows.choose(own)).predict([values], [trims])[0]
+        begin += _BLOCK
 
 
 def make_logs(judgement: Judgement) -> List[Tuple[str, Log]]:

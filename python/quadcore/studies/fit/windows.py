@@ -54,6 +54,11 @@ class Windows(NamedTuple):
         states = {name: values[kept] for name, values in self.states.items()}
         return Windows(self.flights, self.flight[kept], self.start[kept], states)
 
+    def choose_flight(self, number: int) -> Windows:
+        """Return the windows of one flight."""
+        own = self.choose(self.flight == number)
+        return own._replace(flights=[self.flights[number]], flight=np.zeros_like(own.flight))
+
 
 def make_windows(flights: Sequence[PreparedFlight], nodes: int = NODES) -> Windows:
     """Make windows that begin at regular times, leaving out those that touch a gap.
