@@ -50,6 +50,7 @@ from .support.warning import QuadcoreWarning
 from .thesis import LAGRANGE, LAGRANGE_SUMMARY
 
 if TYPE_CHECKING:
+    from . import autopilots
     from .fmu.export import export_fmu
     from .simulation.flight_plan import FlightPlan
     from .simulation.view import View, view
@@ -101,6 +102,7 @@ __all__ = [
     "World",
     "WrenchThrust",
     "__version__",
+    "autopilots",
     "benchmark",
     "cmake_prefix",
     "compare",
@@ -174,6 +176,8 @@ controllers.add_reader(controllers.FileReader(_is_stack_file, _read_autopilot))
 if not TYPE_CHECKING:  # checkers would accept any name
 
     def __getattr__(name: str) -> Any:
+        if name == "autopilots":
+            return import_module(f"{__name__}.{name}")
         if name not in _LATE:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         with LOCK:

@@ -89,5 +89,6 @@ def test_a_module_that_is_missing_or_broken_is_one_line(tmp_path):
 def test_the_class_is_a_controller():
     with pytest.raises(qc.InputError, match=r"^hold is nan. Use 0 to 600 s."):
         Crazyflie(str(STAND_IN), hold=float("nan"))
-    log = fly(Crazyflie(str(STAND_IN), {"kp_z": "2"}), 0.5, "hover")
+    with qc.autopilots.Crazyflie(str(STAND_IN), {"kp_z": "2"}) as autopilot:
+        log = fly(autopilot, 0.5, "hover")
     assert log.position[-1] == pytest.approx([0, 0, 10], abs=0.005)

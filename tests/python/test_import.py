@@ -20,7 +20,15 @@ SLOW = [
 
 PACKAGE = Path(qc.__file__).parent
 PACKAGES = {
-    "autopilots": {"Autopilot", "Betaflight", "Readings", "Sticks", "read_autopilot"},
+    "autopilots": {
+        "ArduPilot",
+        "Autopilot",
+        "Betaflight",
+        "Crazyflie",
+        "Readings",
+        "Sticks",
+        "read_autopilot",
+    },
     "gym": {"Env", "NAME", "OBSERVATIONS", "REWARDS", "VectorEnv"},
     "serve": {"Client", "Server", "ServerError"},
     "fmu": {"export_fmu"},

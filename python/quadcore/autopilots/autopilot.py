@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from pathlib import Path
-from typing import Any, Callable, List, Mapping, Optional, Sequence
+from typing import Any, Callable, List, Mapping, Optional, Sequence, TypeVar
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from .readings import Readings, Sensors, read_held
 from .rotor_map import Channel, Place, check_reaction, map_channels
 from .session import Link, Recorder, Session
 
+_Autopilot = TypeVar("_Autopilot", bound="Autopilot")
+
 MAX_HOLD = 600.0
 """Longest phase before the flight, s."""
 
@@ -25,7 +27,7 @@ class Autopilot:
 
     A bridge to another stack defines `layout`, `start`, `tick`, `pilot` and `close`. A flight calls
     them in this order: `start`; `pilot` and `tick` in every tick of the phase before the flight and
-    of the flight; `close`.
+    of the flight; `close`. In a ``with`` statement, `close` is also called at its end.
 
     In the phase before the flight, the vehicle is held still in its initial pose, and t counts
     from ``-hold`` to 0. Autopilots need this time to start, calibrate and arm. It is not part of
@@ -107,6 +109,12 @@ class Autopilot:
         self._elapsed = self._began = 0.0  # s; simulated and wall-clock time
         self._names = [f"output{i}" for i in range(1, len(self.layout) + 1)]
         self.log = dict.fromkeys(self._names, math.nan)
+
+    def __enter__(self: _Autopilot) -> _Autopilot:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
 
     def start(self, vehicle: Vehicle) -> None:
         """Start the program and connect to it.
