@@ -31,7 +31,7 @@ class Lee:
             self.kx * (reference.position - state.position)
             + self.kv * (reference.velocity - state.linear_velocity)
             + reference.acceleration
-            + np.array([0, 0, vehicle.gravity])
+            - vehicle.gravity
         )  # N, world axes
         R = rotate(state.orientation)
         R_d = find_attitude(force, reference.yaw)

@@ -53,7 +53,7 @@ class NMPC:
 
     def reset(self, simulation: Any) -> None:
         """Take mass and gravity from the vehicle."""
-        self._mass, self._gravity = simulation.vehicle.mass, simulation.vehicle.gravity
+        self._mass, self._gravity = simulation.mass, simulation.gravity
 
     def __call__(self, t: float, state: qc.Odometry, reference: Any) -> qc.RatesThrust:
         """Return thrust and rates for the next period."""
@@ -69,7 +69,7 @@ class NMPC:
 
     def _make_attitudes(self, acceleration: np.ndarray, yaw: np.ndarray) -> Rotation:
         """Return the attitudes of a vehicle that accelerates so, at a yaw."""
-        z = acceleration + self._gravity * _UP
+        z = acceleration - self._gravity
         z /= np.linalg.norm(z, axis=1)[:, None]
         heading = np.column_stack([np.cos(yaw), np.sin(yaw), np.zeros_like(yaw)])
         y = np.cross(z, heading)
@@ -78,7 +78,7 @@ class NMPC:
 
     def _make_inputs(self, acceleration: np.ndarray, wanted: Rotation) -> np.ndarray:
         """Return specific thrust and rates of the reference; shape (horizon, 4)."""
-        thrust = np.linalg.norm(acceleration + self._gravity * _UP, axis=1)[:-1]
+        thrust = np.linalg.norm(acceleration - self._gravity, axis=1)[:-1]
         rates = (wanted[:-1].inv() * wanted[1:]).as_rotvec() / self.step
         return np.column_stack([thrust, rates])
 
@@ -88,7 +88,7 @@ class NMPC:
         turns = Rotation.from_rotvec(self.step * inputs[:, 1:])
         for thrust, turn in zip(inputs[:, 0], turns):
             p, v, attitude = motion[-1]
-            a = thrust * attitude.apply(_UP) - self._gravity * _UP
+            a = thrust * attitude.apply(_UP) + self._gravity
             motion.append(
                 (p + self.step * v + self.step**2 / 2 * a, v + self.step * a, attitude * turn)
             )

@@ -184,6 +184,7 @@ def test_the_view_has_the_parameters_of_the_vehicle_and_its_sensors():
     sim = qc.Simulation("hummingbird", engine="eigen")
     view = sim.vehicle
     assert view.mass == sim.mass
+    assert np.array_equal(view.gravity, sim.gravity)
     assert np.array_equal(view.hover_speed, sim.hover_speed)
     assert view.vehicle is view
     assert "odom" in view.topics

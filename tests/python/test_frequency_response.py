@@ -77,7 +77,7 @@ class Attitude:
     """Height and attitude of a hover, by set points."""
 
     def reset(self, vehicle):
-        self.weight = vehicle.mass * vehicle.gravity
+        self.weight = vehicle.mass * -vehicle.gravity[2]
 
     def __call__(self, t, state, reference):
         a = 2 * (reference.position - state.position) - 2 * state.linear_velocity

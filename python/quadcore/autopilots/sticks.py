@@ -62,7 +62,7 @@ class StickPilot:
         max_yaw_rate: float,
         idle: float,
     ) -> None:
-        self._mass, self._gravity = vehicle.mass, vehicle.gravity
+        self._mass, self._gravity = vehicle.mass, -float(vehicle.gravity[2])
         self._lift = float(np.sum(vehicle.thrust_coefficients * vehicle.rotor_axes[:, 2]))
         self._curve, self._period, self._idle = curve, period, idle
         self._max_angle, self._max_yaw_rate = max_angle, max_yaw_rate

@@ -43,8 +43,8 @@ class Vehicle:
         Inertia about the centre of mass, frame axes, kg m^2.
     center_of_mass : ndarray (3,)
         Centre of mass relative to the frame's origin, frame axes, m.
-    gravity : float
-        Gravitational acceleration along -z of the world, m/s^2.
+    gravity : ndarray (3,)
+        Gravitational acceleration, world axes, m/s^2.
     rotors : tuple of Rotor
         Description of each rotor.
     rotor_count : int
@@ -79,6 +79,7 @@ class Vehicle:
         ]
         self.command_width: int = simulation.command_width
         self.mass: float = simulation.mass
+        self.gravity = np.array(simulation.gravity)
         self.inertia = np.array(simulation.inertia)
         for name, value in _describe(simulation).items():
             setattr(self, name, value)
@@ -177,7 +178,6 @@ def _describe(simulation: Any) -> Dict[str, Any]:
         key=lambda rotor: rotor.command_index,
     )
     return {
-        "gravity": found["gravity"],
         "center_of_mass": found["center_of_mass"],
         "inertia": found["inertia"],
         "hover_speed": np.asarray(hover),
