@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
+import yaml
 from builds import build
 
 import quadcore as qc
 from quadcore.cli import main
+from quadcore.studies.evaluate.plan import Plan
+from quadcore.studies.evaluate.trial import Trial
+from quadcore.studies.measured_flight import fly_and_measure
+from quadcore.studies.options import EvaluateOptions
 from quadcore.studies.sweep.row_spec import read_source
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "lee"
@@ -76,6 +83,49 @@ def test_a_sweep_notices_a_rebuilt_plugin(library, monkeypatch):
     words += ["--vary", "controller.kx=4,9", "--duration", "0.5", "--xacro", "sim_slow:=1"]
     assert main([*words, "--quiet", "--no-plots"]) == 0
     assert read_source(library.name) == library.read_bytes()
+
+
+def test_a_search_of_gains_is_that_of_the_python_twin(library):
+    found = {}
+    for name, text in (("python", f"{EXAMPLE / 'lee.py'}:Lee"), ("plugin", f"{library}:kr=70")):
+        words = ["tune", text, "--free", "kx,kv", "--budget", "2", "-o", f"{name}.yaml"]
+        words += ["--reference", REFERENCE, "--hold-out", "hover", "--duration", "0.5"]
+        words += [] if name == "plugin" else ["--vary", "controller.kr=70"]
+        assert main([*words, "--xacro", "sim_slow:=1", "--quiet"]) == 0
+        found[name] = yaml.safe_load(Path(f"{name}.yaml").read_text())
+    python, plugin = found["python"], found["plugin"]
+    assert plugin["history"]["evaluations"] == pytest.approx(
+        python["history"]["evaluations"], abs=1e-9
+    )
+    assert plugin["law"] == str(library) and plugin["history"]["privileged"]
+    assert "rate" not in plugin and plugin["parameters"]["kr"] == 70
+    rows = qc.evaluate(["plugin.yaml", f"{library}:kr=70"], REFERENCE, **OPTIONS).table
+    assert rows[0]["controller"] == "plugin.yaml (privileged)" and rows[0]["failure"] == ""
+    assert rows[0]["rms_position"] != rows[1]["rms_position"]
+    Path("rate.yaml").write_text(f"law: {library}\nrate: 100\n")
+    refused = qc.evaluate("rate.yaml", REFERENCE, **OPTIONS).table[0]["failure"]
+    assert "is a plugin, which sets its own rate and delay. Remove both." in refused
+
+
+def test_the_delay_margin_of_a_plugin_is_searched_on_the_odometry(library, recwarn):
+    plan = Plan(
+        [f"{EXAMPLE / 'lee.py'}:Lee", str(library)], "hover", ["eigen"], ["quadrotor"], {},
+        EvaluateOptions(duration=2, xacro_args={"sim_slow": 1}),
+    )  # fmt: skip
+    slow, slow_plugin, plugin = (
+        fly_and_measure(partial(trial._replace(kicked=True).make_plan, plan), 60, watch=True).motion
+        for trial in (Trial(0, delay=0.02), Trial(1, delay=0.02), Trial(1))
+    )
+    # The loop has the same delay, in the odometry or in the command.
+    size = abs(slow - plugin).max()
+    assert abs(slow - slow_plugin).max() < 0.1 * size > 1e-3
+    found = qc.evaluate(
+        str(library), "hover", duration=4, margins=True, xacro_args={"sim_slow": 1}
+    )  # fmt: skip
+    (row,) = found.margins
+    assert row["failure"] == "" and 0.02 < row["delay_margin"] < 0.2
+    assert all(math.isnan(row[name]) for name in ("gain_low", "rms_at_100_Hz", "box_worst"))
+    assert "only the delay is searched" in str(recwarn.pop(qc.QuadcoreWarning).message)
 
 
 def test_tables_mark_a_plugin_which_sees_the_whole_simulation(library):

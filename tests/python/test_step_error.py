@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -41,11 +42,41 @@ def test_the_error_of_the_exact_engine_is_far_below_that_of_gazebo():
     assert exact.position < 0.1 * gazebo.position
 
 
-def test_a_random_flight_and_user_code_have_none():
+def test_a_random_flight_and_one_without_plugins_have_none():
     noisy = measure_step_error(plan_of(parameters={"odometry.positionNoise": 1e-4}))
     assert noisy.position is None and "not measured" in noisy.describe()
-    assert measure_step_error(plan_of({"own": lambda t, state, reference: [0] * 4})) is None
     assert measure_step_error(plan_of(engine="lagrange")) is None
+
+
+def test_a_built_in_controller_replaces_those_of_users():
+    own = measure_step_error(plan_of({"own": lambda t, state, reference: [0] * 4}))
+    assert own.position == measure_step_error(plan_of("geometric")).position
+    assert own.flight == ("own (quadrotor, eigen) on circle, with geometric as its controller")
+
+    def fail(t):
+        raise ValueError(t)
+
+    plan = Plan("pd", {"bad": fail}, ["eigen"], ["quadrotor"], {}, EvaluateOptions(duration=1.0))
+    assert measure_step_error(plan).position is None
+
+
+def test_pages_of_sweeps_searches_and_benchmarks_contain_the_error(in_empty_folder):
+    flight = ["--reference", "circle", "--xacro", "sim_slow:=1", "--duration", "0.3", "--quiet"]
+    flight += ["--out"]
+    sweep = ["sweep", "--controller", "pd", "--vary", "controller.rate=250,500", *flight, "swept"]
+    tune = ["tune", "geometric", "--budget", "1", "--hold-out", "hover", *flight, "tuned"]
+    benchmark = ["benchmark", "--controller", "geometric", "--vehicle", "crazyflie"]
+    benchmark += ["--category", "delay", "--quiet", "--out", "benchmark"]
+    for words in (sweep, [*tune, "-o", "gains.yaml"], benchmark):
+        assert main(words) == 0
+    named = {
+        "swept": "row 1, median",
+        "tuned": "hover",
+        "benchmark": "geometric (crazyflie, eigen)",
+    }
+    for folder, flight in named.items():
+        page = Path(folder, "report.html").read_text()
+        assert re.search(rf"Numerical error of the plant: .* of {re.escape(flight)}", page), folder
 
 
 def test_flights_beyond_the_time_limit_have_none():

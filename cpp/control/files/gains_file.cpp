@@ -13,10 +13,12 @@ namespace {
 
 const std::vector<std::string> keys = {"law", "vehicle", "rate", "delay", "parameters", "history"};
 
-/// Return whether a controller is `MODULE:NAME` or `FILE.py[:NAME]`.
+/// Return whether a controller is `MODULE:NAME`, `FILE.py[:NAME]` or the plugin `FILE.so`.
 bool is_user_controller(const std::string& law) {
-  return law.find(':') != std::string::npos ||
-         (law.size() > 3 && law.compare(law.size() - 3, 3, ".py") == 0);
+  const auto ends = [&](const std::string& suffix) {
+    return law.size() > 3 && law.compare(law.size() - 3, 3, suffix) == 0;
+  };
+  return law.find(':') != std::string::npos || ends(".py") || ends(".so");
 }
 
 }  // namespace

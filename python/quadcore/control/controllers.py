@@ -72,7 +72,8 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
         if read.law in NAMES:
             return _set_all(read.make(), values or {})
         name, given = split_own(text)
-        return _make_own(name, {**given, **(values or {})})
+        make: Callable[..., Any] = PluginController if names_plugin(name) else _make_own
+        return make(name, {**given, **(values or {})})
     name, _, rest = text.partition(":")
     if name in NAMES:
         given = read_values(f"controller '{text}'", rest)
@@ -91,6 +92,11 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
 def names_plugin(text: str) -> bool:
     """Whether a text names the library of a plugin."""
     return split_name(text).place.endswith(".so")
+
+
+def uses_plugin(text: str) -> bool:
+    """Whether a text names the library of a plugin, or a gains file for one."""
+    return names_plugin(gains.read(text).law if names_gains_file(text) else text)
 
 
 class FileReader(NamedTuple):
@@ -134,7 +140,15 @@ def split_own(text: str) -> Tuple[str, Dict[str, float]]:
     """Split the text of a user-defined controller into its name and its given values."""
     if names_gains_file(text):
         read = gains.read(text)
-        return read.law, {"rate": read.rate, "delay": read.delay, **read.parameters}
+        timing = {"rate": read.rate, "delay": read.delay}
+        if names_plugin(read.law):
+            if timing != {"rate": RATE, "delay": DELAY}:
+                raise _core.InputError(
+                    f"{text}: '{read.law}' is a plugin, which sets its own rate and delay. Remove "
+                    "both."
+                )
+            timing = {}
+        return read.law, {**timing, **read.parameters}
     split = split_name(text)
     name = f"{split.place}:{split.name}" if split.name else split.place
     return name, read_values(f"controller '{text}'", split.values)
@@ -153,7 +167,7 @@ def read_own(text: str) -> Gains:
     InputError
         As for `parse`, and if the text names an autopilot.
     """
-    if names_added_file(text) or names_plugin(text):
+    if names_added_file(text):
         raise _core.InputError(f"{text}: this controller has no gains to tune. Name another.")
     name, given = split_own(text)
     defaults: Dict[str, float] = {}

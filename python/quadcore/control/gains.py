@@ -8,6 +8,7 @@ robot in its URDF.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Union
@@ -32,9 +33,9 @@ class Gains:
     vehicle : str
         Name of the robot that the gains are for; empty if unknown.
     rate : float
-        Calls per simulated second, 1/s.
+        Calls per simulated second, 1/s; NaN for a plugin, which has none.
     delay : float
-        Time from a call until its command reaches the motors, s.
+        Time from a call until its command reaches the motors, s; NaN for a plugin.
     parameters : mapping of str to float
         Parameters of the controller; the others have their defaults.
     history : mapping or list, optional
@@ -87,8 +88,9 @@ def write(gains: Gains, path: Union[str, Path]) -> None:
     contents: Dict[str, Any] = {"law": gains.law}
     if gains.vehicle:
         contents["vehicle"] = gains.vehicle
-    contents["rate"] = check_rate_or_delay("gains", "rate", gains.rate)
-    contents["delay"] = check_rate_or_delay("gains", "delay", gains.delay)
+    for name, value in (("rate", gains.rate), ("delay", gains.delay)):
+        if not math.isnan(value):
+            contents[name] = check_rate_or_delay("gains", name, value)
     contents["parameters"] = {name: float(value) for name, value in gains.parameters.items()}
     if gains.history is not None:
         contents["history"] = gains.history

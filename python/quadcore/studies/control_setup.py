@@ -12,6 +12,7 @@ from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike, check_callable, set_parameter
 from ..control.fair_controller import PRIVILEGED, restrict
 from ..control.keywords import ReferenceName
+from ..control.plugin_controller import PluginController
 from ..control.rate_and_delay import DELAY
 from ..control.references import ReferenceLike
 from ..simulation.flight_plan import FlightPlan
@@ -116,6 +117,14 @@ class ControlSetup:
         """Whether a controller is user-defined."""
         return _is_user_code(self.things[controller])
 
+    def is_plugin(self, controller: int) -> bool:
+        """Whether a controller is a plugin in C++."""
+        return _is_plugin(self.things[controller])
+
+    def is_privileged(self, controller: int) -> bool:
+        """Whether a study marks a controller, see `PRIVILEGED`."""
+        return _is_privileged(self.things[controller], self.privileged)
+
     def make(self, controller: int, vehicle: str, values: Mapping[str, float]) -> Any:
         """Make a controller with some values for one flight of a vehicle."""
         given = {name: x for name, x in {**self.timing, **values}.items() if x is not None}
@@ -189,9 +198,19 @@ def _is_user_code(thing: Any) -> bool:
     )
 
 
+def _is_plugin(thing: Any) -> bool:
+    if isinstance(thing, str):
+        return controllers.uses_plugin(thing)
+    return isinstance(thing, PluginController)
+
+
 def _is_privileged(thing: Any, privileged: Optional[bool]) -> bool:
-    """Whether a study marks a controller; plugins in C++ have access to the whole simulation."""
-    if isinstance(thing, str) and controllers.names_plugin(thing):
+    """Whether a study marks a controller.
+
+    Plugins in C++ have access to the whole simulation, and autopilots read the true state as their
+    sensors.
+    """
+    if _is_plugin(thing) or (isinstance(thing, str) and controllers.names_added_file(thing)):
         return privileged is not None
     return bool(privileged) and _is_user_code(thing)
 

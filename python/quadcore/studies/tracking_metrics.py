@@ -15,6 +15,9 @@ from ..support.rotation import compute_tilts, to_roll_pitch_yaw
 FAILURE_DISTANCE = 5.0
 """Default tracking error at which a flight counts as failed, m."""
 
+EQUAL = 1e-9
+"""Position errors that differ by less are equal, m: the difference is rounding noise."""
+
 UNITS = {
     "rms_position": "m",
     "max_position": "m",

@@ -12,6 +12,7 @@ from ..evaluate.output import ROWS_OF_PAGE
 from ..evaluate.overview import make_overview
 from ..evaluate.paper_tables import make_latex
 from ..evaluate.ranks import describe_ranks, rank_controllers
+from ..evaluate.step_error import measure_step_error
 from ..table import NOT_FLOWN, count_outcomes, make_csv, make_json, save_files
 from .flights import Benchmark
 from .record import make_record
@@ -76,6 +77,14 @@ def _describe_missing(found: Benchmark) -> str:
     return f"This is a part of {found.definition.version}: {which}."
 
 
+def _describe_step_error(found: Benchmark) -> List[str]:
+    """Describe the numerical error of the plant in the first flight, unless flights are missing."""
+    if any(row["failure"] == NOT_FLOWN for row in found.table):
+        return []
+    error = measure_step_error(found.parts[0].plan)
+    return [] if error is None else [error.describe()]
+
+
 def _round(value: float) -> Any:
     return value if math.isnan(value) else f"{value:.{DIGITS}g}"
 
@@ -97,7 +106,7 @@ def _make_page_values(found: Benchmark, record: Dict[str, Any]) -> Dict[str, Any
         "summary": summarise(found),
         "categories": categories,
         "scores": rows,
-        "notes": list_results_notes(found),
+        "notes": [*list_results_notes(found), *_describe_step_error(found)],
         "overview": make_overview(found.groups),
         "failures": failures[:ROWS_OF_PAGE],
         "hidden_failures": max(0, len(failures) - ROWS_OF_PAGE),

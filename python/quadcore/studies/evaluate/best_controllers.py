@@ -7,7 +7,8 @@ from typing import Any, Dict, List, Mapping, Sequence
 
 import numpy as np
 
-from .intervals import CONFIDENCE, EQUAL, adjust_p_values, compute_p_value
+from ..tracking_metrics import EQUAL
+from .intervals import CONFIDENCE, adjust_p_values, compute_p_value
 
 RANKED = "final_position"
 """Metric by which controllers are ranked."""

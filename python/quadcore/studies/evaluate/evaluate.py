@@ -201,7 +201,7 @@ class _Flights:
         self._done = 0
         self._searches: Optional[MarginSearch] = None
         if margins:
-            self._searches = MarginSearch(plan.control.controllers, plan.lacking)
+            self._searches = MarginSearch(plan.control.controllers, plan.lacking, plan.plugins)
             if plan.omitted_margins:
                 warn(plan.omitted_margins)
 

@@ -11,11 +11,11 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
+from ..tracking_metrics import EQUAL
+
 CONFIDENCE = 0.95
 WORST = 0.1
 """Share of the worst seeds; their mean is the conditional value at risk."""
-EQUAL = 1e-9
-"""Position errors that differ by less are equal, m: the difference is rounding noise."""
 
 
 def compute_interval(values: np.ndarray) -> Tuple[float, float]:

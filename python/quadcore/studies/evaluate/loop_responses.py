@@ -23,6 +23,7 @@ from ..._core import FlightError, InputError, QuadcoreError
 from ...control import references
 from ...control.controller import check_callable
 from ...control.inner_loop import SET_POINTS, InnerLoop
+from ...control.plugin_controller import PluginController
 from ...control.rate_and_delay import RATE
 from ...control.vectorized import command_one, is_vectorized
 from ...control.vehicle import Vehicle
@@ -148,6 +149,11 @@ def _measure(plan: Plan, case: Case, axis: int) -> Response:
     """Measure the response of one loop; raises `QuadcoreError` if the flight fails."""
     hover = references.make_hover(check_pose(SPAWN))
     flight = replace(plan.make_plan(case), reference=hover, duration=_SETTLE + _PERIOD)
+    if isinstance(flight.controller, PluginController):
+        raise InputError(
+            f"controller '{flight.controller.file}' is a plugin, to whose commands nothing can be "
+            "added. Measure the loops of other controllers."
+        )
     simulation = flight.simulation()
     controller = _Injection(flight.controller, axis)
     log = simulation.run(

@@ -76,14 +76,19 @@ class MarginSearch:
         Names of the controllers.
     lacking
         Effects that no tag of the vehicle scales; see `list_missing_effects`.
+    plugins
+        Indices of the controllers that are plugins; only their delay margin is searched.
     """
 
-    def __init__(self, controllers: Sequence[str], lacking: Collection[str]) -> None:
+    def __init__(
+        self, controllers: Sequence[str], lacking: Collection[str], plugins: Collection[int] = ()
+    ) -> None:
         self._rows: List[Dict[str, Any]] = [
             {"controller": name, "failure": NOT_FLOWN, **dict.fromkeys(NAMES, math.nan)}
             for name in controllers
         ]
-        self._kinds = [kind.search for kind in _KINDS if not kind.varies & set(lacking)]
+        self._kinds = [kind for kind in _KINDS if not kind.varies & set(lacking)]
+        self._plugins = plugins
         self._done: Dict[Trial, Outcome] = {}
 
     @property
@@ -104,7 +109,12 @@ class MarginSearch:
             if failure:
                 self._rows[trial.controller]["failure"] = failure
             else:
-                running += [(trial.controller, kind(trial)) for kind in self._kinds]
+                is_plugin = trial.controller in self._plugins
+                running += [
+                    (trial.controller, kind.search(trial))
+                    for kind in self._kinds
+                    if kind.suits_plugins or not is_plugin
+                ]
         asked = [(row, search, next(search)) for row, search in running]
         while asked:
             self._fly_new(fly, [trial for *_, trials in asked for trial in trials])
@@ -220,26 +230,41 @@ class _Kind(NamedTuple):
     name: str
     search: Callable[[Trial], Search]
     varies: AbstractSet[str] = frozenset()
+    suits_plugins: bool = False
 
 
 _KINDS = (
     _Kind("gain", _search_gain, {"thrust"}),
-    _Kind("delay", _search_delay),
+    _Kind("delay", _search_delay, suits_plugins=True),
     _Kind("rates", _sweep_rates),
     _Kind("box", _sample_model_errors, set(BOX)),
 )
 
 
-def describe_omitted(model: str, lacking: Collection[str]) -> str:
-    """State in one line the margins that cannot be searched; "" if all can."""
+def describe_omitted(model: str, lacking: Collection[str], plugins: Sequence[str]) -> str:
+    """State in one line the margins that cannot be searched; "" if all can.
+
+    Parameters
+    ----------
+    model, lacking
+        Name of the vehicle, and effects that none of its tags scales.
+    plugins
+        Names of the controllers that are plugins.
+    """
+    found = []
     left_out = [kind.name for kind in _KINDS if kind.varies & set(lacking)]
-    if not left_out:
-        return ""
-    verb = "is" if len(left_out) == 1 else "are"
-    return (
-        f"margins: no tag of '{model}' scales its {' and its '.join(lacking)}. "
-        f"{' and '.join(left_out)} {verb} not searched."
-    )
+    if left_out:
+        verb = "is" if len(left_out) == 1 else "are"
+        found.append(
+            f"margins: no tag of '{model}' scales its {' and its '.join(lacking)}. "
+            f"{' and '.join(left_out)} {verb} not searched."
+        )
+    if plugins:
+        found.append(
+            f"margins of {', '.join(plugins)}: only the delay is searched. A plugin sets its own "
+            "rate, and its model is the changed vehicle."
+        )
+    return " ".join(found)
 
 
 def format_margin(row: Mapping[str, Any], name: str, number: Callable[[float], str]) -> str:

@@ -74,7 +74,13 @@ class Plan(Cases):
     @property
     def omitted_margins(self) -> str:
         """Margins that cannot be searched, with the reason, in one line; "" if all can."""
-        return margins.describe_omitted(self.models[0], self.lacking)
+        labels = [self.control.controllers[i] for i in self.plugins]
+        return margins.describe_omitted(self.models[0], self.lacking, labels)
+
+    @property
+    def plugins(self) -> Sequence[int]:
+        """Indices of the controllers that are plugins in C++."""
+        return [i for i in range(len(self.control.things)) if self.control.is_plugin(i)]
 
     def set_computation_times(self, times: Sequence[float]) -> None:
         """Delay the commands of each controller by its computation time, s; NaN: no delay."""
@@ -84,13 +90,17 @@ class Plan(Cases):
             return
         labels = self.control.controllers
         found = [f"{labels[i]} {1e3 * time:.3g} ms" for i, time in known.items()]
-        missing = [label for i, label in enumerate(labels) if i not in known]
+        missing = {
+            label: "it is a plugin" if self.control.is_plugin(i) else "its flight failed"
+            for i, label in enumerate(labels)
+            if i not in known
+        }
         self.notes = [
             f"Commands are delayed by computation times measured on this machine, which differ in "
             f"every study: {', '.join(found) or 'none'}.",
             *(
-                f"The computation time of {label} is not measured, because its flight failed."
-                for label in missing
+                f"The computation time of {label} is not measured, because {reason}."
+                for label, reason in missing.items()
             ),
         ]
 

@@ -12,8 +12,8 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
+from ..tracking_metrics import EQUAL
 from .best_controllers import CELL, RANKED
-from .intervals import EQUAL
 
 
 class Ranks(NamedTuple):

@@ -8,9 +8,9 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from ..measured_flight import Outcome
-from ..tracking_metrics import UNITS
+from ..tracking_metrics import EQUAL, UNITS
 from .best_controllers import RANKED, mark_best
-from .intervals import EQUAL, compute_cvar, compute_effect_size, compute_interval
+from .intervals import compute_cvar, compute_effect_size, compute_interval
 
 
 def summarise_seeds(

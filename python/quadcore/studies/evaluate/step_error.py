@@ -1,56 +1,16 @@
-"""Numerical error of the plant: the change of a flight if the step is halved."""
+"""Numerical error of the plant in an evaluation."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import partial
-from typing import Mapping, NamedTuple, Optional
+from typing import Iterator, Optional, Tuple
 
-import numpy as np
-
-from ..._core import QuadcoreError
-from ...simulation.engines import exerts_wrenches
 from ...simulation.flight_plan import FlightPlan
-from ...simulation.log import Log
-from ...support.warning import suppress_warnings
-from ..executor import call_apart
-from ..time_limit import time_limit
-from .intervals import EQUAL
+from ..step_error import StepError, compute_step_error
 from .plan import Plan
-
-_LONGEST = 10.0  # s
-
-
-class StepError(NamedTuple):
-    """Change of a flight if its step is halved."""
-
-    flight: str
-    """Controller, model and engine."""
-    step: float
-    """Step of the study, s."""
-    duration: float
-    """Compared part of the flight, s."""
-    position: Optional[float]
-    """Maximum change of the position, m; None if the flight is random, fails, or is too slow."""
-
-    def describe(self) -> str:
-        """Describe the error in one line."""
-        if self.position is None:
-            return (
-                "The numerical error of the plant is not measured: the flight is random, fails, or "
-                "exceeds the time limit."
-            )
-        return (
-            f"Numerical error of the plant: {self.position:.2g} m, the maximum change of the "
-            f"position within {self.duration:g} s of {self.flight} if the step of "
-            f"{1e3 * self.step:g} ms is halved."
-        )
 
 
 def measure_step_error(plan: Plan) -> Optional[StepError]:
-    """Repeat the start of the first flight of a built-in controller at half the step.
-
-    The flights run in a process of their own, each within the time limit of the plan.
+    """Repeat the start of a flight at half the step, if possible one of a built-in controller.
 
     Parameters
     ----------
@@ -60,46 +20,23 @@ def measure_step_error(plan: Plan) -> Optional[StepError]:
     Returns
     -------
     StepError or None
-        Error; None without a built-in controller in an engine with plugins.
+        Error; None without simulated flights in an engine with plugins.
     """
-    for names, flight in plan.list_built_in_flights():
-        if exerts_wrenches(flight.engine):
-            short = replace(flight, duration=min(_LONGEST, flight.duration))
-            named = f"{_name(names)} on {plan.control.references[0]}"
-            change = call_apart(partial(_compare, short, plan.options.time_limit))
-            return StepError(named, short.step, short.duration, change)
+    for name, flight in _list_flights(plan):
+        found = compute_step_error(name, flight, plan.options.time_limit)
+        if found is not None:
+            return found
     return None
 
 
-def _name(names: Mapping[str, str]) -> str:
-    return f"{names['controller']} ({names['model']}, {names['engine'].partition(',')[0]})"
+def _list_flights(plan: Plan) -> Iterator[Tuple[str, FlightPlan]]:
+    for names, flight in plan.list_built_in_flights():
+        yield _name(names["controller"], names["model"], flight, plan), flight
+    for row in range(0, len(plan), len(plan.seeds)):
+        sides = plan.name_sides(plan[row])
+        flight = plan.make_plan_of_row(row)
+        yield _name(sides["controller"], sides["model"], flight, plan), flight
 
 
-def _compare(flight: FlightPlan, limit: float) -> Optional[float]:
-    """Return the maximum change of the position, m; None for a random or failed flight.
-
-    Parameters
-    ----------
-    flight
-        Flight at the step of the study.
-    limit
-        Wall-clock limit of each flight, s.
-    """
-    half = replace(flight, dt=flight.step / 2, log_every=2 * flight.log_every)
-    other_seed = replace(flight, seed=flight.seed + 1)
-
-    def fly(plan: FlightPlan) -> Log:
-        with time_limit(limit), suppress_warnings():
-            return plan.fly()
-
-    try:
-        log = fly(flight)
-        return None if _change(log, fly(other_seed)) >= EQUAL else _change(log, fly(half))
-    except QuadcoreError:
-        return None
-
-
-def _change(log: Log, other: Log) -> float:
-    rows = min(len(log), len(other))
-    away = np.linalg.norm(log.position[:rows] - other.position[:rows], axis=1)
-    return float(away.max())
+def _name(controller: str, model: str, flight: FlightPlan, plan: Plan) -> str:
+    return f"{controller} ({model}, {flight.engine}) on {plan.control.references[0]}"

@@ -6,9 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Sequence
 
 from ..table import format_number
-from ..tracking_metrics import UNITS
+from ..tracking_metrics import EQUAL, UNITS
 from .best_controllers import CELL
-from .intervals import EQUAL
 
 if TYPE_CHECKING:
     from .evaluate import Evaluation

@@ -7,7 +7,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..._core import InputError, ParameterInfo, parse_number
 from ...control.built_in import BuiltInController
-from ...control.controller import check_callable, set_parameter
+from ...control.controller import SENSED, check_callable, set_parameter
 from ...control.fair_controller import FairController
 from ...control.inner_loop import InnerLoop
 from ...control.plugin_controller import PluginController
@@ -45,16 +45,13 @@ class Trial(NamedTuple):
     def make_plan(self, plan: Cases) -> FlightPlan:
         """Make the plan of the flight; errors of the controller pass through."""
         flight = plan.make_plan(Case(self.controller))
-        if isinstance(flight.controller, PluginController):
-            raise InputError(
-                f"controller '{flight.controller.file}': a plugin models the changed vehicle. "
-                "Search margins of other controllers."
-            )
         if self.kicked:
             flight = _KickedPlan(
                 **{each.name: getattr(flight, each.name) for each in fields(flight)}
             )
         controller = flight.controller
+        if isinstance(controller, PluginController):
+            return self._delay_odometry(flight) if self.delay else flight
         if self.rate is not None:
             set_parameter(controller, "rate", self.rate)
         if self.delay:
@@ -71,6 +68,20 @@ class Trial(NamedTuple):
             controller = _NominalModelController(controller, described)
         changed = {**flight.parameters, **self._scale_tags(described)}
         return replace(flight, controller=controller, parameters=changed)
+
+    def _delay_odometry(self, flight: FlightPlan) -> FlightPlan:
+        """Delay the odometry of a plugin instead of its commands: the loop has the same delay."""
+        simulation = replace(flight, on_reference=False).simulation()
+        sensor = simulation.topics[SENSED].writer
+        for plugin in simulation.plugins:
+            for tag in plugin.parameters:
+                if plugin.name == sensor and (tag.name, tag.unit) == ("delay", "s"):
+                    delay = repr(float(tag.value) + self.delay)
+                    key = f"{sensor}.{tag.name}"
+                    return replace(flight, parameters={**flight.parameters, key: delay})
+        raise InputError(
+            f"plugin '{sensor}' of topic '{SENSED}' has no tag <delay>. Use libodometry_plugin.so."
+        )
 
     def _scale_tags(self, simulation: Simulation) -> Dict[str, str]:
         """Return the tags of the scaled vehicle."""

@@ -12,13 +12,14 @@ from ... import __version__
 from ..._core import InputError
 from ..flight_folder import DOCUMENT, remove_flights
 from ..output_folder import remove_plots, save_plots
+from ..step_error import compute_step_error
 from ..table import format_number, format_settings, make_json, save_files
 from . import plots as sweep_plots
 from .plan import AnyPlan
 from .repeat_command import write_command
 from .sensitivity import compute_sensitivities, list_combinations
 from .sweep import PARQUET, TABLE
-from .watched_rows import make_player, watch_rows, write_watched_rows
+from .watched_rows import WatchedRow, make_player, watch_rows, write_watched_rows
 
 FILES = (TABLE, "sweep.json", DOCUMENT, "report.html")
 
@@ -82,12 +83,22 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         sensitivities=_drop_repeated([_format(row) for row in found if row["measure"] == measure]),
         measure=measure,
         player=make_player(watched) if plots else "",
+        step_error=_describe_step_error(watched),
         worst=[_format(row) for row in list_worst(plan, columns, measure)],
         meanings=plan.meanings,
         units=plan.units,
         plots=[{"name": name, "data": data} for name, data in images.items()],
     )
     return [folder / TABLE, *written, page]
+
+
+def _describe_step_error(watched: Sequence[WatchedRow]) -> str:
+    """Describe the numerical error of the plant in the first of some rows; "" without one."""
+    for row in watched:
+        flight = row.flight
+        error = compute_step_error(row.name, flight.plan, flight.limit)
+        return "" if error is None else error.describe()
+    return ""
 
 
 def remove_sweep(folder: Path) -> None:

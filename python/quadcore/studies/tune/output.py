@@ -20,6 +20,7 @@ from ..flight_folder import (
     write_flights,
     write_logs,
 )
+from ..step_error import compute_step_error
 from ..table import format_number, format_settings
 from ..time_limit import time_limit
 from .problem import Flown, Problem, Trial
@@ -63,6 +64,11 @@ def write(found: Tuning, problem: Problem, folder: Path, plots: bool = True) -> 
     written = write_flights(folder, listed)
     images = _draw(found) if plots else {}
     written += save_drawings(folder, images)
+    step_error = compute_step_error(
+        trial.label,
+        trial.plan if problem.runs_user_code else problem.make_plan(trial, gains[_TUNED]),
+        problem.options.time_limit,
+    )
     history = found.gains.history
     write_page(
         folder / PAGE,
@@ -75,6 +81,7 @@ def write(found: Tuning, problem: Problem, folder: Path, plots: bool = True) -> 
         "held-out flight failed or did not return from an offset.",
         conditions=f"{', '.join(problem.models)}, engine {trial.plan.engine}, "
         f"{trial.plan.duration:g} s; search on {', '.join(history['tuned_on'])}.",
+        step_error="" if step_error is None else step_error.describe(),
         watched=trial.label,
         player=_make_player(flown, trial),
         gains=[_describe_gain(name, gains[_START][name], x) for name, x in gains[_TUNED].items()],

@@ -22,8 +22,8 @@ from typing import (
 import numpy as np
 
 from ... import _core
-from ..._core import FlightError, InputError, QuadcoreError
-from ...control import controllers, references
+from ..._core import FlightError, InputError
+from ...control import references
 from ...control.built_in import BuiltInController
 from ...control.gains import Gains
 from ...report.decimation import decimate
@@ -33,17 +33,16 @@ from ...simulation.simulation import Simulation
 from ...simulation.state import State
 from ...support import rotation
 from ...support.arguments import shorten
-from ...support.warning import suppress_warnings
 from ..axes import Values
 from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
 from ..control_setup import ControlSetup, add_labels, names_user_code
 from ..design import Design
-from ..executor import call_apart, count_cores
+from ..executor import count_cores
 from ..grouped_flights import fly_group, share_out
 from ..options import ControlOptions
-from ..time_limit import time_limit
 from ..tracking_metrics import compute_errors, describe_failure, find_failure_time
 from ..variation import pick_controller_values
+from .own_parameters import read_own
 
 _GAIN = re.compile(r"(k[pidrw]|[qr])_\w+")
 
@@ -161,7 +160,10 @@ class Problem:
         self._cases.check()
         self.models = self._cases.models[: len(models)]
         self.vehicle = self._cases.vehicles[0]
-        self._own = _read_own(str(controller), options.time_limit) if self.runs_user_code else None
+        self._own: Optional[Gains] = None
+        if self.runs_user_code:
+            first = self._cases.make_plan_without_controller(Case())
+            self._own = read_own(str(controller), first, options.time_limit)
         self.training: List[Trial] = []
         self.held_out: List[Trial] = []
         for case in sorted(self._cases, key=lambda case: (case.model, case[1:])):
@@ -198,7 +200,7 @@ class Problem:
     def simulate(self, trial: Trial, gains: Mapping[str, float]) -> Flown:
         """Simulate a trial; raises `InputError` if the controller rejects gains or vehicle."""
         try:
-            return Flown(self._make_plan(trial, gains).fly(), "")
+            return Flown(self.make_plan(trial, gains).fly(), "")
         except FlightError as error:
             if not hasattr(error, "log"):
                 raise
@@ -271,7 +273,7 @@ class Problem:
         list of TrialResult, or None
             Results; None if only single flights are possible.
         """
-        records = fly_group([partial(self._make_plan, *flight) for flight in flights], limit)
+        records = fly_group([partial(self.make_plan, *flight) for flight in flights], limit)
         if records is None:
             return None
         return [
@@ -291,7 +293,8 @@ class Problem:
         processes = self.options.processes or count_cores()
         return [group for rows in kinds for group in share_out(rows, processes)]
 
-    def _make_plan(self, trial: Trial, gains: Mapping[str, float]) -> FlightPlan:
+    def make_plan(self, trial: Trial, gains: Mapping[str, float]) -> FlightPlan:
+        """Make the plan of a trial; raises `InputError` if the controller rejects the gains."""
         controller = self._make_controller({**gains, **trial.values})
         if not trial.has_offset:
             return replace(trial.plan, controller=controller)
@@ -300,7 +303,7 @@ class Problem:
 
     def watch(self, trial: Trial, gains: Mapping[str, float]) -> Log:
         """Simulate a trial with gains and return its decimated log; raises `QuadcoreError`."""
-        return decimate(self._make_plan(trial, gains).fly())
+        return decimate(self.make_plan(trial, gains).fly())
 
     def list_settings(self) -> Dict[str, Any]:
         """Return the settings of the flights, as plain values."""
@@ -317,6 +320,7 @@ class Problem:
                 for name, value in values.items()
                 if value and value != defaults[name] and name not in _UNLISTED
             },
+            **({"privileged": True} if self._cases.control.is_privileged(0) else {}),
             **({"vary": axes} if axes else {}),
         }
 
@@ -360,19 +364,6 @@ class Problem:
                 f"controller '{controller}' has no gain above 0. Set some at the start."
             )
         return positive
-
-
-def _read_own(text: str, limit: float) -> Gains:
-    """Read the parameters of a user-defined controller in a separate process."""
-
-    def import_it() -> Gains:
-        with suppress_warnings(), time_limit(limit):
-            return controllers.read_own(text)
-
-    try:
-        return call_apart(import_it)
-    except QuadcoreError as error:
-        raise InputError(str(error)) from error
 
 
 def _make_plain(value: Any) -> Any:
