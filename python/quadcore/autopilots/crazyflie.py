@@ -87,7 +87,7 @@ class Crazyflie(Autopilot):
         self._link = self.session
         if self.session is None:
             hover = self.curve.find_outputs(np.abs(vehicle.hover_speed))
-            weight = vehicle.mass * vehicle.gravity
+            weight = -vehicle.mass * float(vehicle.gravity[2])
             values = {
                 "mass": str(vehicle.mass),
                 "massThrust": str(_FULL * float(np.mean(hover)) / weight),
