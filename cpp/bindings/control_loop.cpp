@@ -10,6 +10,7 @@
 #include "bindings.hpp"
 #include "controller.hpp"
 #include "flight.hpp"
+#include "odometry.hpp"
 #include "quadcore/commands.hpp"
 
 namespace quadcore::bindings {
@@ -52,20 +53,20 @@ class BoundLoop {
   /// \param function  called without arguments; returns the speeds to command
   /// \param limits    speeds at which a rotor counts as saturated, (width_,) [rad/s]
   void advance(std::int64_t n, const py::function& function, const py::object& limits) {
-    const Numbers most = numbers(limits, 1, "limits");
-    check_shape(most, {static_cast<py::ssize_t>(width_)}, "limits");
-    const Lock lock(*bound_.guarded);
-    const auto call = [&](double, double* speeds) {
-      py::object answer;
-      without_lock([&] { clocked([&] { answer = function(); }); });
-      take(answer, speeds);
-      bool at_limit = false;
-      for (std::size_t i = 0; i < width_; ++i) {
-        at_limit = at_limit || std::abs(speeds[i]) >= most.data()[i];
-      }
-      saturated_ += at_limit;
-    };
-    raising_warnings(*bound_.guarded, [&] { loop_.advance(n, call); });
+    advance_by(n, limits, [&] { return function(); });
+  }
+
+  /// The same for a function of the time and of the latest odometry.
+  /// \param vehicle  object whose function `topic` the odometry passes on
+  void control(std::int64_t n, const py::function& function, const py::object& limits,
+               const std::string& odometry, const py::object& vehicle) {
+    const Simulation& simulation = bound_.guarded->simulation;
+    const Topics& topics = simulation.topics();
+    const std::size_t topic = control::GuidedController::find_odometry(topics, odometry);
+    advance_by(n, limits, [&] {
+      BoundOdometry now{vehicle, topics[topic].stamp, topics.read<messages::Odometry>(topic), {}};
+      return function(simulation.time(), std::move(now));
+    });
   }
 
   std::int64_t calls() const { return calls_; }
@@ -76,6 +77,25 @@ class BoundLoop {
   const control::ControlLoop& loop() const { return loop_; }
 
  private:
+  /// \param ask  called without the lock; returns the speeds to command
+  template <class Ask>
+  void advance_by(std::int64_t n, const py::object& limits, const Ask& ask) {
+    const Numbers most = numbers(limits, 1, "limits");
+    check_shape(most, {static_cast<py::ssize_t>(width_)}, "limits");
+    const Lock lock(*bound_.guarded);
+    const auto call = [&](double, double* speeds) {
+      py::object answer;
+      without_lock([&] { clocked([&] { answer = ask(); }); });
+      take(answer, speeds);
+      bool at_limit = false;
+      for (std::size_t i = 0; i < width_; ++i) {
+        at_limit = at_limit || std::abs(speeds[i]) >= most.data()[i];
+      }
+      saturated_ += at_limit;
+    };
+    raising_warnings(*bound_.guarded, [&] { loop_.advance(n, call); });
+  }
+
   template <class Call>
   void clocked(const Call& call) {
     using Clock = std::chrono::steady_clock;
@@ -102,6 +122,7 @@ class BoundLoop {
 
   /// Copies the speeds that a controller returned.
   void take(const py::object& answer, double* speeds) const {
+    if (take_floats(answer, speeds)) return;
     try {
       const Numbers array = numbers(answer, 1, "command");
       check_command(array.data(), static_cast<std::size_t>(array.size()), width_);
@@ -116,6 +137,19 @@ class BoundLoop {
                                   what.substr(0, what.find(". Give")) + ". Return " +
                                   std::to_string(width_) + " rotor speeds in rad/s.");
     }
+  }
+
+  /// Copies the usual lists of floats without NumPy. Returns false for everything else.
+  bool take_floats(const py::object& answer, double* speeds) const {
+    if (!PyList_CheckExact(answer.ptr())) return false;
+    const py::list list = py::reinterpret_borrow<py::list>(answer);
+    if (list.size() != width_) return false;
+    for (std::size_t i = 0; i < width_; ++i) {
+      PyObject* const number = list[i].ptr();
+      if (!PyFloat_CheckExact(number) || !std::isfinite(PyFloat_AS_DOUBLE(number))) return false;
+      speeds[i] = PyFloat_AS_DOUBLE(number);
+    }
+    return true;
   }
 
   BoundFlight& bound_;
@@ -140,6 +174,10 @@ void bind_control_loop(py::module_& m) {
            py::arg("reference"), "Advance n steps under a built-in controller.")
       .def("advance", &BoundLoop::advance, py::arg("n"), py::arg("function"), py::arg("limits"),
            "Advance n steps under a function that returns rotor speeds (n,), rad/s.")
+      .def("control", &BoundLoop::control, py::arg("n"), py::arg("function"), py::arg("limits"),
+           py::arg("odometry"), py::arg("vehicle"),
+           "Advance n steps under a function of time, s, and odometry that returns rotor speeds "
+           "(n,), rad/s.")
       .def_property_readonly("calls", &BoundLoop::calls, "How often the controller was called.")
       .def_property_readonly("saturated", &BoundLoop::saturated,
                              "Number of calls with a command that the rotors could not follow.")

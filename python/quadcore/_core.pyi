@@ -496,6 +496,14 @@ class ControlLoop(metaclass=_Bound):
         self, n: int, controller: Controller, odometry: str, reference: ReferenceShape
     ) -> None: ...
     def advance(self, n: int, function: Callable[[], npt.ArrayLike], limits: _Array) -> None: ...
+    def control(
+        self,
+        n: int,
+        function: Callable[[float, Odometry], npt.ArrayLike],
+        limits: _Array,
+        odometry: str,
+        vehicle: Any,
+    ) -> None: ...
     @property
     def calls(self) -> int: ...
     @property

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict
+from typing import Any
 
 from .. import _core
 from .built_in import BuiltInController
-from .controller import SENSED, check_callable
+from .controller import check_callable
 from .plugin_controller import PluginController
 from .vehicle import Vehicle
 
@@ -60,22 +60,6 @@ def restrict(controller: Any) -> Any:
     return FairController(controller)
 
 
-class SensedOdometry(_core.Odometry):
-    """Odometry that gives access to the topics of sensors only."""
-
-    def __init__(self, simulation: _core.Simulation, vehicle: Vehicle) -> None:
-        super().__init__(simulation, SENSED)
-        self._vehicle = vehicle
-
-    @property
-    def topic(self) -> Callable[[str], Dict[str, float]]:
-        """Function that returns the message of a sensor's topic by its name."""
-        return self._vehicle.topic
-
-
-def make_sense(controller: Any, simulation: Any) -> Callable[[], _core.Odometry]:
-    """Return the function that reads the odometry for a controller."""
-    if not getattr(controller, "reads_sensors_only", False):
-        return lambda: _core.Odometry(simulation, SENSED)
-    vehicle = Vehicle(simulation)
-    return lambda: SensedOdometry(simulation, vehicle)
+def find_sensors(controller: Any, simulation: Any) -> Any:
+    """Return the object whose topics a controller may read: a `Vehicle` shows only sensors."""
+    return Vehicle(simulation) if getattr(controller, "reads_sensors_only", False) else simulation

@@ -127,6 +127,17 @@ def add_future(reference: Callable[[float], Any]) -> Callable[[float], Any]:
         lambda times: sample_function(reference, times)
     )
 
+    shape = getattr(reference, "shape", None)
+    if isinstance(shape, _core.ReferenceShape):
+        give_point = shape.at
+
+        def give_built_in(t: float) -> Any:
+            value = give_point(t)
+            value.at = at  # type: ignore[attr-defined]
+            return value
+
+        return give_built_in
+
     def give(t: float) -> Any:
         value = reference(t)
         if value is None or hasattr(value, "at"):

@@ -13,7 +13,7 @@ from ..control import controllers, references
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED, ControllerLike, check_callable
 from ..control.estimate_errors import EstimateErrors
-from ..control.fair_controller import make_sense
+from ..control.fair_controller import find_sensors
 from ..control.inner_loop import SET_POINTS, InnerLoop
 from ..control.keywords import ReferenceName
 from ..control.own_columns import OwnColumns
@@ -24,6 +24,9 @@ from ..control.vectorized import CommandAll, command_one, is_vectorized
 from ..support.arguments import shorten
 from ..support.user_code import describe_error
 from .reference_pilot import PluginPilot, ReferencePilot
+
+Command = Callable[[float, _core.Odometry], Any]
+"""Function of time, s, and odometry that returns rotor speeds, rad/s."""
 
 
 class ControllerPilot(ReferencePilot):
@@ -162,35 +165,33 @@ class ControllerPilot(ReferencePilot):
             core, shape = self.built_in
             return lambda steps: loop.follow(steps, core, SENSED, shape)
         call, limits = self._function(simulation), self._limits
+        sensors = find_sensors(self._controller, simulation)
         if isinstance(self._controller, BuiltInController):
             call, limits = self._count_reported(call), np.full(len(limits), np.inf)
-        return lambda steps: loop.advance(steps, call, limits)
+        return lambda steps: loop.control(steps, call, limits, SENSED, sensors)
 
-    def _count_reported(self, call: Callable[[], Any]) -> Callable[[], Any]:
+    def _count_reported(self, call: Command) -> Command:
         """Count what a built-in controller reports, which its speeds alone do not show."""
 
-        def count() -> Any:
-            speeds = call()
+        def count(t: float, state: _core.Odometry) -> Any:
+            speeds = call(t, state)
             self._reported += self._controller.saturated
             return speeds
 
         return count
 
-    def _function(self, simulation: Any) -> Callable[[], Any]:
+    def _function(self, simulation: Any) -> Command:
         """Make the function that calls the controller, and its inner loop if there is one."""
         controller, inner_loop = self._controller, self._inner_loop
         period = max(1 / self.rate, simulation.dt)  # called once a step at most
         reference = None if self._reference is None else add_future(self._reference)
-        sense = make_sense(controller, simulation)
         width = len(self._limits)
 
-        def call_vectorized() -> Any:
-            t, state = simulation.time, sense()
+        def call_vectorized(t: float, state: _core.Odometry) -> Any:
             wanted = None if reference is None else reference(t)
             return command_one(controller, t, state, wanted, width)
 
-        def call() -> Any:
-            t, state = simulation.time, sense()
+        def call(t: float, state: _core.Odometry) -> Any:
             speeds = controller(t, state, None if reference is None else reference(t))
             if isinstance(speeds, SET_POINTS):
                 return inner_loop.speeds(simulation, period, state, speeds)
@@ -199,14 +200,14 @@ class ControllerPilot(ReferencePilot):
 
         return self._add_notes(call_vectorized if self.is_vectorized else call, simulation)
 
-    def _add_notes(self, call: Callable[[], Any], simulation: Any) -> Callable[[], Any]:
+    def _add_notes(self, call: Command, simulation: Any) -> Command:
         """Note the controller's own columns and errors of its estimate after each call, if any."""
         columns, errors = self._own_columns, self._estimate_errors
         if not columns.columns and errors is None:
             return call
 
-        def call_and_note() -> Any:
-            t, speeds = simulation.time, call()
+        def call_and_note(t: float, state: _core.Odometry) -> Any:
+            speeds = call(t, state)
             if columns.columns:
                 columns.note(t)
             if errors is not None:

@@ -28,6 +28,7 @@ Progress = Callable[[int, int], None]
 
 _LONGEST = 1e9  # s
 _PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
+_GROWTH = 16  # of a piece over the one before, at most
 _PACED = 0.04  # s of wall-clock time; longest piece of a flight at a pace
 _ROWS = 4096  # of a piece, at most; it stays in the cache until its rows are where they belong
 
@@ -195,7 +196,7 @@ def _advance(
             done += steps
             now = time.perf_counter()
             if now - started < _PIECE:
-                steps *= 2
+                steps *= min(_GROWTH, 1 + int(_PIECE / max(now - started, _PIECE / _GROWTH)))
             if progress is not None and (now - last_report >= _PIECE or done == total):
                 progress(done, total)
                 last_report = now
