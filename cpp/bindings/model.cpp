@@ -133,7 +133,9 @@ most_levels, most_attributes : int
       .def_property_readonly("ignored", &IgnoredElements::ignored,
                              "Names of the elements that the user ignored.")
       .def_property_readonly("warning", &IgnoredElements::warning,
-                             "Warning about elements without effect on the motion, or \"\".");
+                             "Warning about elements without effect on the motion, or \"\".")
+      .def_property_readonly("unsimulated", &IgnoredElements::unsimulated,
+                             "What may affect the motion but is not simulated, list of str.");
 
   py::class_<HarmlessElement>(m, "HarmlessElement",
                               "Element or module without effect on the motion.")

@@ -192,7 +192,8 @@ Snapshot
           "Warnings about the model and this flight, list of str.")
       .def_property_readonly(
           "ignored", [](const Self& self) { return self->ignored(); },
-          "Elements of model and world that the user ignored, list of str.")
+          "Elements of model and world that the user ignored, and what of the world is not "
+          "simulated, list of str.")
       .def_property_readonly(
           "plugins", [](const Self& self) { return &self->plugins(); },
           py::return_value_policy::reference_internal,

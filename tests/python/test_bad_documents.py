@@ -296,7 +296,6 @@ WORLDS = {
             for name in ("population",)
         ),
         fault(GRAVITY, "<plugin/>", "<plugin> requires the attribute name"),
-        fault("<sor>1.3</sor>", "<use_dynamic_moi_rescaling>1</use_dynamic_moi_rescaling>", "0"),
         fault(GRAVITY, "<gravty>0 0 1</gravty>", "<gravty> in <world>", "Did you mean 'gravity'?"),
         fault(GRAVITY, '<atmosphere type="thick"/>', "atmosphere type 'thick'", "Use adiabatic"),
         fault(PHYSICS, '<physics type="bullet">', "physics type 'bullet'", "Use ode"),
@@ -329,18 +328,8 @@ WORLDS = {
         fault("</world>", "</world><world/>", "a second <world>", "Keep one of them"),
     ],
     "a model of a world that is not supported": [
-        fault(END, f"{END}<include/>", "<include> requires a <uri>. Add one"),
-        fault(
-            END,
-            f"{END}<include><uri>model://cessna</uri></include>",
-            "'model://cessna' is not found",
-            "to GAZEBO_MODEL_PATH",
-        ),
         fault(END, END + PLANE.replace("0 0 1", "0 0 0"), "<normal> is zero", "Write a direction"),
-        fault(
-            END, END + PLANE.replace("plane", "heightmap"), "the shape <heightmap>", "Use box, sph"
-        ),
-        fault(END, END + PLANE.replace("plane", "mesh"), "the mesh '' is not found", "Add the"),
+        fault(END, END + PLANE.replace("plane", "torus"), "the shape <torus>", "Use box, sphere"),
     ],
     "XML that is malformed or dangerous": [
         fault("</physics>", "</physic>", "malformed XML", "mismatched tag"),

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.io
-from faults import MODEL, PUSHER, UNFELT, at, refusal
+from faults import MODEL, PUSHER, UNFELT, WORLD, at, refusal
 
 import quadcore as qc
 from quadcore.cli import main
@@ -31,17 +31,19 @@ def test_what_nothing_feels_of_a_world_is_named_in_one_warning(flown):
 
 
 STORM = '<plugin name="storm" filename="libstorm.so"><force>1</force></plugin>'
+WIND = '<plugin name="wind" filename="libWindPlugin.so"/>'
 HOUSE = "<include><uri>model://house</uri><pose>1 0 0 0 0 0</pose></include>"
 WALL = (
     '<model name="wall"><static>0</static><pose>1 0 0 0 0 0</pose><link name="a">'
+    "<kinematic>1</kinematic>"
     '<collision name="b"><surface/><geometry><box/></geometry></collision></link></model>'
 )
 
 
 @pytest.mark.parametrize(
     ("foreign", "names"),
-    [(STORM, ["libstorm.so", "storm"]), (HOUSE, ["model://house"]), (WALL, ["wall"])],
-    ids=["plugin", "include", "model"],
+    [(WIND, ["libWindPlugin.so", "wind"]), (WALL, ["wall"])],
+    ids=["plugin", "model"],
 )
 def test_what_is_foreign_in_a_world_is_left_out_on_request(flown, foreign, names):
     message = refusal(flown, world=foreign)
@@ -65,6 +67,66 @@ def test_a_flight_without_an_obstacle_of_its_world_says_so(flown, capsys, model,
     assert f"{name}: the vehicle passes through" in Path("out/report.html").read_text()
     assert json.loads(Path("out/run.json").read_text())["ignore"] == [name]
     assert f"# ignored: {name}" in Path("out/log.csv").read_text()
+
+
+HILL = (
+    '<model name="hill"><static>1</static>{}<link name="a"><collision name="b">{}'
+    "<geometry><{}</geometry></collision></link></model>"
+)
+PATCH = (
+    "<surface><friction><torsional><patch_radius>1</patch_radius></torsional></friction></surface>"
+)
+UNSIMULATED = {
+    "a plugin of the world": (STORM, "libstorm.so"),
+    "a plugin of a model": (HILL.format(STORM, "", "box/>"), "libstorm.so of hill"),
+    "a missing model": (HOUSE, "the missing model model://house"),
+    "an include without uri": ("<include/>", "an <include> without <uri>"),
+    "a heightmap": (HILL.format("", "", "heightmap/>"), "the heightmap of hill"),
+    "a missing mesh": (
+        HILL.format("", "", "mesh><uri>model://hill/a.dae</uri></mesh>"),
+        "the missing mesh model://hill/a.dae of hill",
+    ),
+    "torsional friction": (HILL.format("", PATCH, "box/>"), "torsional friction of hill"),
+    "rescaled inertia": (
+        '<physics default="1"><ode><solver><use_dynamic_moi_rescaling>1</use_dynamic_moi_rescaling>'
+        "</solver></ode></physics>",
+        "use_dynamic_moi_rescaling",
+    ),
+}
+
+
+@pytest.mark.parametrize(("world", "name"), UNSIMULATED.values(), ids=UNSIMULATED)
+def test_what_gazebo_would_simulate_is_named_wherever_a_flight_is_shown(flown, capsys, world, name):
+    said = "not simulated, though it may affect the motion: "
+    with pytest.warns(qc.QuadcoreWarning, match=said):
+        simulation = flown(world=world)
+    place = at("toy.world", "<use_dyn" if "dyn" in name else world[:9])
+    assert f"{said}{name} ({place}" in "".join(simulation.warnings)
+    assert simulation.world.ignored_elements.unsimulated == [name]
+    assert simulation.ignored == [name]
+    command = ["run", "toy.urdf", "--world", "toy.world", "--duration", "0.01", "--no-plots"]
+    assert main([*command, "--out", "out"]) == 0
+    shown = capsys.readouterr()
+    assert said in shown.err
+    assert "not simulated" in shown.out and name.split(" ")[-1] in shown.out
+    assert "not simulated" in Path("out/report.html").read_text()
+    assert json.loads(Path("out/run.json").read_text())["unsimulated"] == [name]
+    assert f"# ignored: {name}" in Path("out/log.csv").read_text()
+
+
+@pytest.mark.parametrize(
+    "command",
+    ["evaluate --controller geometric --reference hover --engine eigen", "compare other.urdf"],
+)
+def test_the_pages_of_studies_name_what_is_not_simulated(toy, command):
+    (toy / "toy.world").write_text(WORLD.replace("  </world>", f"{HOUSE}</world>"))
+    flight = ["--world", "toy.world", "--duration", "0.1", "--out", "out", "--no-plots"]
+    name, *options = command.split()
+    (toy / "other.urdf").write_text(MODEL)
+    models = ["toy.urdf"] if name == "compare" else []
+    assert main([name, *models, *options, *flight]) == 0
+    page = next(Path("out").glob("*.html")).read_text()
+    assert "the missing model model://house" in page
 
 
 def test_what_a_world_makes_felt_is_refused_whatever_is_to_be_ignored(flown):

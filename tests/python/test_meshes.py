@@ -186,16 +186,25 @@ def test_a_broken_file_is_one_line(file, content, complaint, models):
     assert "\n" not in message
 
 
-def test_a_mesh_that_is_not_found_names_the_remedy(models):
+def test_a_mesh_that_is_not_found_is_missing_in_the_world(models):
     world = write_world(models, "cube.obj", FILES["cube.obj"], "<scale>0 1 1</scale>")
     with pytest.raises(qc.InputError, match=r"case\.world:1: <scale> is 0. Correct it"):
         read(world)
     world = write_world(models, "cube.obj", FILES["cube.obj"])
     (models / "cube.obj").unlink()
-    with pytest.raises(qc.InputError, match=r"cube\.obj' is not found\. Add the fol"):
-        read(world)
+    without = qc.read_world(world)
+    assert without.obstacles == []
+    (missing,) = without.ignored_elements.unsimulated
+    assert missing.startswith("the missing mesh ") and missing.endswith("cube.obj of thing")
     with pytest.warns(qc.QuadcoreWarning, match="thing"):
         qc.Simulation("quadrotor", engine="gazebo11", world=world, ignore=["thing"])
+
+
+def test_a_broken_mesh_of_an_ignored_model_is_not_read(models):
+    world = write_world(models, "cube.obj", b"v 0 0 zero\n")
+    with pytest.raises(qc.InputError, match=r"cube\.obj.*use --ignore thing\.$"):
+        read(world)
+    assert qc.read_world(world, ignore=["thing"]).ignored_models == ["thing"]
 
 
 def test_a_polyline_is_extruded(models):

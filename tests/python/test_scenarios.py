@@ -154,6 +154,14 @@ def test_events_are_listed_by_time():
         ("events:\n  - {at: 1, cut: 1, lats: 2}", 2, "'lats'"),
         ("events:\n  - {cut: 1}", 2, "'at'"),
         ("events: {at: 1, cut: 1}", 1, "list"),
+        ("obstacles:\n  - {box: [1, 1, 0], at: [0, 0, 0]}", 2, "not positive"),
+        ("obstacles:\n  - {at: [0, 0, 0]}", 2, "one shape"),
+        ("obstacles:\n  - {sphere: 1}", 2, "lacks 'at'"),
+        ("obstacles:\n  - {sphere: 1, at: [0, 0]}", 2, "3 numbers"),
+        ("obstacles:\n  - {sphere: 1, at: [0, 0, 0], size: 2}", 2, "'size'"),
+        ("obstacles:\n  - {sphere: 1, at: [9, 0, 0], name: a}\n"
+         "  - {sphere: 1, at: [5, 0, 0], name: a}", 3, "second obstacle 'a'"),
+        ("obstacles: {sphere: 1}", 1, "list"),
         ("weather: bad", 1, "'weather'"),
         ("- wind", 1, "plugins:"),
         ("", 1, "plugins:"),
@@ -292,3 +300,38 @@ def test_every_kind_of_event_is_documented():
     for name, kind in KINDS.items():
         assert f"| `{name}` |" in page
         assert all(f"`{key}`" in page for key in kind.others)
+
+
+def test_a_scenario_places_obstacles_as_a_world_has_them(capsys):
+    shapes = {
+        "box": ("[0.2, 2, 3]", "<size>0.2 2 3</size>"),
+        "cylinder": ("[0.1, 3]", "<radius>0.1</radius><length>3</length>"),
+        "sphere": ("0.4", "<radius>0.4</radius>"),
+    }
+    for kind, (sizes, geometry) in shapes.items():
+        placed = write_scenario(
+            f"obstacles:\n  - {{{kind}: {sizes}, at: [1, 0.2, 10], rpy: [0, 0, 0.3], name: it}}\n"
+        )
+        Path("it.world").write_text(
+            '<sdf version="1.6"><world name="w"><model name="it"><static>1</static>'
+            '<pose>1 0.2 10 0 0 0.3</pose><link name="l"><collision name="c">'
+            f"<geometry><{kind}>{geometry}</{kind}></geometry></collision></link></model></world></sdf>"
+        )
+        command = ["run", "quadrotor", *GUIDED, "--reference", "ramp:time=0.1", "--duration", "1"]
+        logs = []
+        for options in (["--scenario", placed], ["--world", "it.world"]):
+            assert main([*command, *options, "--log", "log.csv", "--json"]) == 0
+            result = json.loads(capsys.readouterr().out)
+            assert result["nearest_obstacle"]["obstacle"] == "it"
+            assert result["clearance"] < 1e-3
+            logs.append(Path("log.csv").read_text())
+        assert logs[0] == logs[1]
+
+
+def test_an_obstacle_of_a_scenario_takes_no_name_of_the_world():
+    Path("it.world").write_text(
+        '<sdf version="1.6"><world name="w"><model name="obstacle 1"/></world></sdf>'
+    )
+    placed = write_scenario("obstacles:\n  - {sphere: 1, at: [9, 0, 0]}\n")
+    with pytest.raises(qc.InputError, match=r"storm\.yaml:2: the world already has a model"):
+        fly_scenario(placed, world="it.world")

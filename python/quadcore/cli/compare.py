@@ -203,6 +203,7 @@ def _describe_flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str
             if value not in (None, 0) and name not in plan.design.names
         },
         **reading.describe_changes(arguments),
+        **({"unsimulated": ", ".join(plan.unsimulated)} if plan.unsimulated else {}),
     }
 
 

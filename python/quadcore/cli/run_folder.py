@@ -45,6 +45,7 @@ def write_description(
         "duration": plan.duration,
         "parameters": dict(plan.parameters),
         "ignore": list(arguments.ignore),
+        "unsimulated": simulation.world.ignored_elements.unsimulated,
     }
     flight = WrittenFlight(
         plan.model.name,

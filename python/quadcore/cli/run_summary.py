@@ -48,6 +48,8 @@ def summarize(
         result["max_rotor_speed_commanded"] = float(fastest.speed / size)
     if simulation.world.ignored_models:
         result["ignored_models"] = simulation.world.ignored_models
+    if simulation.world.ignored_elements.unsimulated:
+        result["unsimulated"] = simulation.world.ignored_elements.unsimulated
     if clearance.nearest is not None:
         result["clearance"] = clearance.minimum
         result["nearest_obstacle"] = clearance.nearest._asdict()
@@ -96,6 +98,8 @@ def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
     if "ignored_models" in result:
         names = ", ".join(result["ignored_models"])
         rows.append(("missing in the world", f"{names}: the vehicle passes through"))
+    if "unsimulated" in result:
+        rows.append(("not simulated", ", ".join(result["unsimulated"])))
     if "clearance" in result:
         nearest = Encounter(**result["nearest_obstacle"])
         rows.append(("clearance", f"{result['clearance']:.4g} m from {nearest}"))

@@ -210,7 +210,8 @@ class FlightPlan:
         if read is None:
             return self
         model, tags = read.apply_to(self.model)
-        plan = replace(self, model=model, parameters={**tags, **self.parameters})
+        world = read.add_obstacles(self.world)
+        plan = replace(self, model=model, world=world, parameters={**tags, **self.parameters})
         # Other warnings follow when the vehicle is made.
         with read.locate_errors(), suppress_warnings():
             make_simulation(**plan._vehicle())

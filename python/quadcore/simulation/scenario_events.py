@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import yaml
 
 from .._core import InputError, parse_number
 from ..support.parameters import suggest
-from ..support.yaml_nodes import find_line, read_pairs, read_scalar
+from ..support.yaml_nodes import find_line, read_numbers, read_pairs
 
 
 class EventKind(NamedTuple):
@@ -128,7 +127,7 @@ def _read_event(file: str, node: yaml.Node, what: str) -> Event:
             )
     for key, (count, default) in wanted.items():
         if key in given:
-            values[key] = _read_numbers(file, key, given[key][1], count)
+            values[key] = read_numbers(file, key, given[key][1], count)
         elif default:
             values[key] = default
         else:
@@ -154,16 +153,3 @@ def _read_event(file: str, node: yaml.Node, what: str) -> Event:
 def _name_unknown(given: Mapping[str, object]) -> str:
     others = [name for name in given if name != "at"]
     return f"'{others[0]}'" if others else "nothing"
-
-
-def _read_numbers(file: str, key: str, node: yaml.Node, count: int) -> str:
-    """Read `count` numbers, or a text if `count` is 0."""
-    items = node.value if isinstance(node, yaml.SequenceNode) else [node]
-    texts = [read_scalar(file, key, item) for item in items]
-    if count == 0 and len(texts) == 1:
-        return texts[0]
-    values = [parse_number(text) for text in texts]
-    if len(values) != count or any(v is None or not math.isfinite(v) for v in values):
-        form = {0: "a name", 1: "a number"}.get(count, f"a list of {count} numbers")
-        raise InputError(f"{file}:{find_line(node)}: {key} is {' '.join(texts)}. Write {form}.")
-    return " ".join(texts)

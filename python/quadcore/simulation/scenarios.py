@@ -1,8 +1,8 @@
-"""Scenarios: disturbances, faults and payload events of a flight, in YAML.
+"""Scenarios: disturbances, faults, payload events and obstacles of a flight, in YAML.
 
-A scenario file is a mapping with ``plugins`` and ``events``. ``plugins`` contains tags by the name
-of the plugin; plugins that the model does not have are added. `KINDS` lists the events. The
-built-in files are ``config/scenarios/NAME.yaml``.
+A scenario file is a mapping with ``plugins``, ``events`` and ``obstacles``. ``plugins`` contains
+tags by the name of the plugin; plugins that the model does not have are added. `KINDS` lists the
+events. The built-in files are ``config/scenarios/NAME.yaml``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 import yaml
 
-from .._core import Document, InputError, Model, read_model
+from .._core import Document, InputError, Model, World, read_model
 from ..control.plugin_controller import NAME, PluginController
 from ..model import resources
 from ..support.input_files import check_regular, is_file
@@ -24,12 +24,14 @@ from ..support.output_files import printable_name
 from ..support.parameters import suggest
 from ..support.yaml_nodes import find_line, read_pairs, read_root, read_scalar
 from .scenario_events import Event, read_events
+from .scenario_obstacles import PlacedObstacle, add_obstacles, read_obstacles
 
 NONE = "none"
 """Name of the scenario without disturbances."""
 
 _LIBRARY = "library"
-_WRITE = "plugins: and events:"
+_SECTIONS = ("plugins", "events", "obstacles")
+_WRITE = "plugins:, events: or obstacles:"
 
 
 class Tag(NamedTuple):
@@ -90,6 +92,9 @@ class Scenario:
             )
             _add_event(self._file, addition, event)
         self._additions = list(additions.values())
+        self._obstacles: Sequence[PlacedObstacle] = ()
+        if "obstacles" in nodes:
+            self._obstacles = read_obstacles(self._file, nodes["obstacles"])
 
     def apply_to(self, model: Model) -> Tuple[Model, Dict[str, str]]:
         """Apply the scenario to a model.
@@ -118,6 +123,16 @@ class Scenario:
             return model, parameters
         document = _insert_plugins(model.document, end, added, self._file)
         return read_model(document, list(model.ignored_elements.ignored)), parameters
+
+    def add_obstacles(self, world: World) -> World:
+        """Return a world with the obstacles of the scenario.
+
+        Raises
+        ------
+        InputError
+            If an obstacle is wrong; the message begins with ``FILE:LINE``.
+        """
+        return add_obstacles(world, self._obstacles, self._file)
 
     def describe_late_events(self, end: float) -> str:
         """Return a warning about events after the end of a flight, or "".
@@ -209,7 +224,7 @@ def _find(name: str) -> Path:
 def _read_sections(file: str, node: yaml.Node) -> Dict[str, yaml.Node]:
     found = {}
     for key, value in read_pairs(file, node, _WRITE):
-        if key.value not in ("plugins", "events"):
+        if key.value not in _SECTIONS:
             raise InputError(
                 f"{file}:{find_line(key)}: a scenario has no '{key.value}'. Write {_WRITE}."
             )

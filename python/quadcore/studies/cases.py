@@ -227,6 +227,14 @@ class Cases(Sequence[Case]):
             return max(1, round(1 / (LOG_RATE * dt)))
         return self.options.log_every
 
+    @property
+    def unsimulated(self) -> List[str]:
+        """Parts of the worlds that may affect the motion but are not simulated."""
+        worlds = [self._plans[0].world, *self.variation.worlds.values()]
+        return list(
+            dict.fromkeys(name for each in worlds for name in each.ignored_elements.unsimulated)
+        )
+
     def list_settings(self) -> Dict[str, Any]:
         """Return the settings that all flights share, as plain values."""
         options, step = self.options, self._plans[0].step
@@ -244,6 +252,7 @@ class Cases(Sequence[Case]):
             "set": dict(self.variation.set),
             "xacro": {name: str(value) for name, value in self.variation.arguments.items()},
             "ignore": list(options.ignore),
+            "unsimulated": self.unsimulated,
         }
 
     def _make_controller(self, controller: int, model: int, point: Point) -> Any:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any, Iterator, Tuple, Union
 
 import yaml
 
-from .._core import InputError
+from .._core import InputError, parse_number
 from .input_files import read_text
 
 _SCALAR = "tag:yaml.org,2002:"
@@ -53,6 +54,25 @@ def read_scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
     if node.tag == f"{_SCALAR}bool":  # yes and on are others
         return "true" if yaml.SafeLoader.bool_values[node.value.lower()] else "false"
     return str(node.value)
+
+
+def read_numbers(path: Union[str, Path], name: str, node: yaml.Node, count: int) -> str:
+    """Return `count` numbers with spaces between them, or a text if `count` is 0.
+
+    Raises
+    ------
+    InputError
+        If the node is something else.
+    """
+    items = node.value if isinstance(node, yaml.SequenceNode) else [node]
+    texts = [read_scalar(path, name, item) for item in items]
+    if count == 0 and len(texts) == 1:
+        return texts[0]
+    values = [parse_number(text) for text in texts]
+    if len(values) != count or any(v is None or not math.isfinite(v) for v in values):
+        form = {0: "a name", 1: "a number"}.get(count, f"a list of {count} numbers")
+        raise InputError(f"{path}:{find_line(node)}: {name} is {' '.join(texts)}. Write {form}.")
+    return " ".join(texts)
 
 
 def find_line(node: yaml.Node) -> int:

@@ -39,6 +39,8 @@ Handling decide_on_element(const std::string& parent, const std::string& element
 /// Return how to handle a plugin tag without a quadcore module: `skip` if the module is known only
 /// to sense or publish. A module that pushes or controls must not be skipped silently.
 Handling decide_on_module(const std::string& filename);
+/// Return whether a plugin of a Gazebo world is known to move the air around the vehicles.
+bool moves_air(const std::string& filename);
 /// Return how to handle text between the elements in `parent`.
 Handling decide_on_text(const std::string& parent);
 /// Return how to handle an attribute of `parent` without a meaning, and a second element in

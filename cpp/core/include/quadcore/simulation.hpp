@@ -126,7 +126,8 @@ class Simulation : private ForceField {
   /// Return the warnings: first those of loading the model and its plugins, then those of this
   /// flight. The latter are part of a snapshot, and a reset removes them.
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Return the names of elements of model and world that the user ignored.
+  /// Return the names of elements of model and world that the user ignored, and what of the world
+  /// is not simulated.
   const std::vector<std::string>& ignored() const { return ignored_; }
 
   /// Set the state. Throws InputError for a state that is not finite or has wrong sizes.

@@ -1,9 +1,10 @@
 #include "embedded_meshes.hpp"
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
+#include <cstdint>
+#include <cstring>
 #include <limits>
+#include <unordered_map>
+#include <vector>
 
 #include "mesh_file.hpp"
 #include "quadcore/plugin/error.hpp"
@@ -30,18 +31,33 @@ void center(SubMesh& part) {
   for (Vector3d& v : part.vertices) v -= middle;
 }
 
-/// Reads numbers from a text without copying it.
+constexpr int digits_per_number = 8;  // hexadecimal
+
+/// Append 32 bits as hexadecimal digits, which are faster to read than decimal ones.
+template <class Number>
+void append_bits(Number number, std::string& text) {
+  std::uint32_t bits = 0;
+  static_assert(sizeof bits == sizeof number);
+  std::memcpy(&bits, &number, sizeof bits);
+  for (int shift = 28; shift >= 0; shift -= 4) text += "0123456789abcdef"[bits >> shift & 15u];
+}
+
+/// Reads the numbers of append_bits() from a text without copying it.
 class NumberReader {
  public:
   NumberReader(const Xml& xml, const Element& e) : xml_(xml), e_(e) {
     at_ = e.GetText() ? e.GetText() : "";
   }
-  template <class Number, class Parse>
-  bool next(Number& number, const Parse& parse) {
-    char* end = nullptr;
-    number = parse(at_, &end);
-    if (end == at_) return false;
-    at_ = end;
+  template <class Number>
+  bool next(Number& number) {
+    if (!*at_) return false;
+    std::uint32_t bits = 0;
+    for (int i = 0; i < digits_per_number; ++i, ++at_) {
+      const bool is_digit = *at_ >= '0' && *at_ <= '9';
+      if (!is_digit && !(*at_ >= 'a' && *at_ <= 'f')) fail();
+      bits = bits << 4 | static_cast<std::uint32_t>(is_digit ? *at_ - '0' : *at_ - 'a' + 10);
+    }
+    std::memcpy(&number, &bits, sizeof number);
     return true;
   }
   [[noreturn]] void fail() const { xml_.fail(e_, "the embedded mesh is damaged. Remove it."); }
@@ -52,20 +68,32 @@ class NumberReader {
   const char* at_;
 };
 
+/// Numbers the distinct vertices of a mesh in their order.
+class VertexNumbers {
+ public:
+  std::uint32_t find(const Eigen::Vector3f& vertex, std::string& text) {
+    std::string bits;
+    for (const float coordinate : {vertex.x(), vertex.y(), vertex.z()})
+      append_bits(coordinate, bits);
+    const auto [at, is_new] = numbers_.emplace(bits, static_cast<std::uint32_t>(numbers_.size()));
+    if (is_new) text += bits;
+    return at->second;
+  }
+
+ private:
+  std::unordered_map<std::string, std::uint32_t> numbers_;
+};
+
 TriangleMesh read_triangles(const Xml& xml, const Element& embedded) {
   TriangleMesh mesh;
   NumberReader vertices(xml, xml.required_child(embedded, "vertices"));
-  const auto to_float = [](const char* text, char** end) { return std::strtof(text, end); };
-  for (Eigen::Vector3f v; vertices.next(v.x(), to_float);) {
-    if (!vertices.next(v.y(), to_float) || !vertices.next(v.z(), to_float)) vertices.fail();
+  for (Eigen::Vector3f v; vertices.next(v.x());) {
+    if (!vertices.next(v.y()) || !vertices.next(v.z()) || !v.allFinite()) vertices.fail();
     mesh.vertices.push_back(v);
   }
   NumberReader indices(xml, xml.required_child(embedded, "triangles"));
-  const auto to_index = [](const char* text, char** end) {
-    return static_cast<std::uint32_t>(std::strtoul(text, end, 10));
-  };
-  for (TriangleMesh::Triangle t; indices.next(t[0], to_index);) {
-    if (!indices.next(t[1], to_index) || !indices.next(t[2], to_index)) indices.fail();
+  for (TriangleMesh::Triangle t; indices.next(t[0]);) {
+    if (!indices.next(t[1]) || !indices.next(t[2])) indices.fail();
     for (const std::uint32_t index : t) {
       if (index >= mesh.vertices.size()) indices.fail();
     }
@@ -91,21 +119,17 @@ std::string embed_mesh(const std::string& path, const Element& mesh) {
   std::vector<SubMesh> parts = read_mesh_file(path);
   const std::string wanted = text_in(descend(&mesh, {"submesh", "name"}));
   std::string vertices, triangles;
-  std::size_t first = 0;
+  VertexNumbers numbers;
   for (SubMesh& part : parts) {
     if (!wanted.empty() && part.name != wanted) continue;
     if (!wanted.empty() && is_centered(mesh)) center(part);
+    std::vector<std::uint32_t> number_of;
     for (const Vector3d& v : part.vertices) {
-      std::array<char, 64> text;
-      const Eigen::Vector3f f = v.cast<float>();
-      std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g ", static_cast<double>(f.x()),
-                    static_cast<double>(f.y()), static_cast<double>(f.z()));
-      vertices += text.data();
+      number_of.push_back(numbers.find(v.cast<float>(), vertices));
     }
     for (const TriangleMesh::Triangle& t : part.triangles) {
-      for (const std::uint32_t index : t) triangles += std::to_string(first + index) + " ";
+      for (const std::uint32_t index : t) append_bits(number_of[index], triangles);
     }
-    first += part.vertices.size();
     if (!wanted.empty()) break;
   }
   if (triangles.empty()) {

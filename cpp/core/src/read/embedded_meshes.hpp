@@ -20,7 +20,8 @@ std::string mesh_key(const Xml::Element& mesh);
 std::string mesh_uri(const Xml::Element& mesh);
 
 /// Return the text between `<embedded_mesh>` and `</embedded_mesh>` for a mesh file: a line of
-/// vertices and one of triangles. Throws InputError if the file is broken or lacks the submesh.
+/// vertices, each once, and one of triangles, both as hexadecimal bits. Throws InputError if the
+/// file is broken or lacks the submesh.
 std::string embed_mesh(const std::string& path, const Xml::Element& mesh);
 
 /// The triangles that a world contains, by mesh_key().

@@ -149,6 +149,10 @@ Handling decide_on_module(const std::string& filename) {
   return is_harmless ? Handling::skip : Handling::reject_unless_ignored;
 }
 
+bool moves_air(const std::string& filename) {
+  return filename == "libgazebo_wind_plugin.so" || filename == "libWindPlugin.so";
+}
+
 Handling decide_on_text(const std::string& parent) {
   // Text in deeper elements of a model may be the remains of a damaged element.
   return parent == "robot" || is_in_world(parent) ? Handling::skip : Handling::reject;

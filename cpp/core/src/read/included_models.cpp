@@ -49,6 +49,24 @@ std::string uri_of(const Element& include) {
   return uri && uri->GetText() ? trimmed(uri->GetText()) : "";
 }
 
+/// Return the name of a `<model>`, or that which an `<include>` gives to its model; else "".
+std::string model_name_of(const Element& element) {
+  const Element* own = element.FirstChildElement("name");
+  if (element.Name() == std::string("model") && element.Attribute("name")) {
+    return trimmed(element.Attribute("name"));
+  }
+  if (element.Name() == std::string("include") && own && own->GetText()) {
+    return trimmed(own->GetText());
+  }
+  return "";
+}
+
+/// Return the message of an error, with a suggestion to ignore a model unless it has one.
+std::string with_suggestion(const InputError& error, const std::string& name) {
+  const std::string what = error.what();
+  return what.find("--ignore") != std::string::npos ? what : what + suggest_ignoring(name);
+}
+
 /// Writes a world again, one node a line, with the models inside.
 class Embedding {
  public:
@@ -79,7 +97,25 @@ class Embedding {
     is_old_ = was_old;
   }
 
+  /// Write an element. Files of a model that the user ignores are not read.
   void write(const Element& element, const Document& source) {
+    const std::string name = is_in_model_ ? "" : model_name_of(element);
+    if (name.empty()) return write_inside(element, source);
+    is_in_model_ = true;
+    is_ignored_ = is_ignored(name);
+    try {
+      write_inside(element, source);
+    } catch (const InputError& error) {
+      throw InputError(with_suggestion(error, name));
+    }
+    is_in_model_ = is_ignored_ = false;
+  }
+
+  bool is_ignored(const std::string& name) const {
+    return std::find(ignore_.begin(), ignore_.end(), name) != ignore_.end();
+  }
+
+  void write_inside(const Element& element, const Document& source) {
     const NewElement written = convert_element(element, is_old_);
     const std::string& name = written.name;
     const int number = element.GetLineNum();
@@ -101,16 +137,16 @@ class Embedding {
         add_line("<!-- -->", source, node->GetLineNum());
       }
     }
-    if (name == "include" && !element.FirstChildElement("sdf")) embed(element, source);
-    if (name == "mesh") embed_triangles(element, source);
+    if (!is_ignored_) {
+      if (name == "include" && !element.FirstChildElement("sdf")) embed(element, source);
+      if (name == "mesh") embed_triangles(element, source);
+    }
     add_line("</" + name + ">", source, number);
   }
 
   void embed(const Element& include, const Document& source) {
     const std::string uri = uri_of(include);
-    const auto found = std::find(ignore_.begin(), ignore_.end(), uri) == ignore_.end()
-                           ? path_.find(uri)
-                           : std::string();
+    const std::string found = is_ignored(uri) ? "" : path_.find(uri);
     if (found.empty()) return;
     if (std::find(chain_.begin(), chain_.end(), found) != chain_.end()) {
       throw InputError(source.at(include.GetLineNum()) + ": '" + uri +
@@ -125,9 +161,7 @@ class Embedding {
       const Xml xml(model, "sdf", none, old_sdf_root);
       write_root(xml.root(), model);
     } catch (const InputError& error) {
-      const std::string what = error.what();
-      const bool suggests = what.find("--ignore") != std::string::npos;
-      throw InputError(what + (suggests ? "" : suggest_ignoring(uri)));
+      throw InputError(with_suggestion(error, uri));
     }
     chain_.pop_back();
   }
@@ -154,6 +188,8 @@ class Embedding {
   std::vector<std::string> chain_;  ///< files that contain one another, outermost first
   std::set<std::string> embedded_;  ///< URIs of models, and keys of meshes
   bool has_embedded_ = false;       ///< whether the result differs from the world
+  bool is_in_model_ = false;        ///< whether a model of the world is written
+  bool is_ignored_ = false;         ///< whether the user ignores that model
   bool is_old_ = false;             ///< whether the document that is written is SDF 1.0 to 1.2
 };
 

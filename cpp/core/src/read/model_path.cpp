@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 #include "quadcore/text.hpp"
@@ -16,6 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr int newest_minor = 7;           // Gazebo 11 reads SDF 1.7
 constexpr int deepest_package_level = 6;  // folders between ROS_PACKAGE_PATH and a package
+/// Files that keep rospack from looking in a folder's folders; a package contains no other.
+const char* const last_levels[] = {"package.xml", "CATKIN_IGNORE", "rospack_nosubdirs"};
 
 std::vector<std::string> folders_of(const char* variable) {
   std::vector<std::string> folders;
@@ -52,6 +55,29 @@ std::string find_sdf(const fs::path& folder) {
   }
   const fs::path file = folder / name;
   return is_file(file) ? file.string() : "";
+}
+
+/// Append the packages in a folder as rospack finds them, but sorted: the order of a folder's
+/// entries is arbitrary. Links may form cycles.
+void crawl(const fs::path& folder, int level, std::set<fs::path>& visited,
+           std::vector<fs::path>& manifests) {
+  std::error_code missing;
+  if (!visited.insert(fs::canonical(folder, missing)).second || missing) return;
+  if (is_file(folder / "package.xml")) manifests.push_back(folder / "package.xml");
+  if (level > deepest_package_level ||
+      std::any_of(std::begin(last_levels), std::end(last_levels),
+                  [&](const char* name) { return is_file(folder / name); })) {
+    return;
+  }
+  std::vector<fs::path> folders;
+  std::error_code unreachable;
+  for (fs::directory_iterator at(folder, unreachable), end; !unreachable && at != end;
+       at.increment(unreachable)) {
+    std::error_code gone;
+    if (at->is_directory(gone)) folders.push_back(at->path());
+  }
+  std::sort(folders.begin(), folders.end());
+  for (const fs::path& inner : folders) crawl(inner, level + 1, visited, manifests);
 }
 
 /// Return what follows a prefix, or "" if the text begins otherwise.
@@ -105,17 +131,10 @@ const std::vector<ModelPath::Package>& ModelPath::packages() {
   if (has_packages_) return packages_;
   has_packages_ = true;
   std::vector<fs::path> files;
+  std::set<fs::path> visited;
   for (const std::string& root : folders_of("ROS_PACKAGE_PATH")) {
-    std::error_code unreachable;
-    const auto options = fs::directory_options::skip_permission_denied;
-    for (fs::recursive_directory_iterator at(root, options, unreachable), end; at != end;
-         at.increment(unreachable)) {
-      if (unreachable) break;
-      if (at.depth() >= deepest_package_level) at.disable_recursion_pending();
-      if (at->path().filename() == "package.xml") files.push_back(at->path());
-    }
+    crawl(root, 0, visited, files);
   }
-  std::sort(files.begin(), files.end());  // the order of a folder's entries is arbitrary
   for (const fs::path& file : files) {
     tinyxml2::XMLDocument manifest;
     if (manifest.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) continue;

@@ -80,7 +80,12 @@ class ModelReader {
   /// Find what an `<include>` names, unless it is no model or the user ignores it.
   template <class Read>
   void read_include(const Element& include, const Read& read) {
-    const std::string uri = xml_.text(xml_.required_child(include, "uri"));
+    const Element* given_uri = xml_.child(include, "uri");
+    if (!given_uri) {
+      return xml_.ignored_elements().add_unsimulated("an <include> without <uri>",
+                                                     xml_.where(include));
+    }
+    const std::string uri = xml_.text(*given_uri);
     const Element* own = xml_.child(include, "name");
     const std::string name = own ? xml_.text(*own) : uri;
     if (xml_.ignored_elements().ignores({uri, name})) {
@@ -97,10 +102,8 @@ class ModelReader {
       xml = &open_builtin(uri, text);
       sdf = &xml->root();
     } else {
-      xml_.fail(*xml_.child(include, "uri"),
-                "'" + uri +
-                    "' is not found. Add the folder that contains the model to GAZEBO_MODEL_PATH." +
-                    suggest_ignoring(uri));
+      return xml_.ignored_elements().add_unsimulated("the missing model " + uri,
+                                                     xml_.where(*given_uri));
     }
     const Element* model = xml->child(*sdf, "model");
     if (model) {
@@ -245,7 +248,7 @@ class ModelReader {
                e->FirstChildElement("pose") ? frames.find_pose(*e) : read_own_pose(nested));
         });
       } else if (kind == "plugin") {
-        skip_plugin(xml, *e);
+        skip_plugin(xml, *e, name);
       } else if (kind != "link" && !known_elements.count(kind)) {
         xml.ignored_elements().add_harmless("<" + kind + "> in <model>", xml.where(*e));
       }
@@ -254,7 +257,7 @@ class ModelReader {
     if (!given.include) return free_links;
     for (const Element* e = given.include->FirstChildElement("plugin"); e;
          e = e->NextSiblingElement("plugin")) {
-      skip_plugin(xml_, *e);
+      skip_plugin(xml_, *e, name);
     }
     return free_links;
   }
@@ -282,7 +285,7 @@ class ModelReader {
         }
         continue;
       }
-      std::optional<Obstacle> shape = read_obstacle(xml, *e, scale, is_static, meshes_);
+      std::optional<Obstacle> shape = read_obstacle(xml, *e, model, scale, is_static, meshes_);
       if (!shape) continue;
       // A plane stands still in a free model, and where <pose> puts it, whatever the state says.
       const bool is_plane = shape->kind == ShapeKind::plane;
@@ -320,17 +323,21 @@ class ModelReader {
 
 }  // namespace
 
-void skip_plugin(const Xml& xml, const Element& plugin) {
+void skip_plugin(const Xml& xml, const Element& plugin, const std::string& model) {
   const std::string name = xml.attribute(plugin, "name");
   const std::string filename = xml.attribute(plugin, "filename");
   if (xml.ignored_elements().ignores({name, filename})) return;
   if (decide_on_module(filename) == Handling::skip) {
     return xml.ignored_elements().add_harmless(filename, xml.where(plugin));
   }
-  xml.fail(plugin, "plugin '" + name + "': " + filename + " is a " +
-                       plugin.Parent()->ToElement()->Name() +
-                       " plugin of Gazebo, which quadcore does not load. Remove it." +
-                       suggest_ignoring(filename));
+  if (moves_air(filename)) {
+    xml.fail(plugin, "plugin '" + name + "': " + filename +
+                         " moves the air, and the vehicle would fly in calm air without it. Add "
+                         "libwind_plugin.so to the vehicle." +
+                         suggest_ignoring(filename));
+  }
+  xml.ignored_elements().add_unsimulated(filename + (model.empty() ? "" : " of " + model),
+                                         xml.where(plugin));
 }
 
 WorldModels read_models(const Xml& xml, const Element& world) {

@@ -24,8 +24,9 @@ struct WorldModels {
 /// one that the vehicle could feel but that is not supported.
 WorldModels read_models(const Xml& xml, const Xml::Element& world);
 
-/// Skip a Gazebo plugin that only senses or publishes. Throws InputError for any other one, unless
-/// the user ignores it.
-void skip_plugin(const Xml& xml, const Xml::Element& plugin);
+/// Skip a Gazebo plugin. One that does more than sense or publish is recorded as not simulated.
+/// Throws InputError for one that moves the air, unless the user ignores it.
+/// \param model  name of its model, or ""
+void skip_plugin(const Xml& xml, const Xml::Element& plugin, const std::string& model);
 
 }  // namespace quadcore

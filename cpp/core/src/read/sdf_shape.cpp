@@ -56,14 +56,14 @@ Surface read_surface(const Xml& xml, const Element& collision, bool is_static) {
   return surface;
 }
 
-/// Reject torsional friction, which is not modelled, unless the user ignores it. It is in
-/// proportion to the radius of the patch of contact, which is 0 by default.
-void refuse_torsional_friction(const Xml& xml, const Element& collision) {
+/// Record torsional friction, which is not modelled. It is in proportion to the radius of the patch
+/// of contact, which is 0 by default.
+void skip_torsional_friction(const Xml& xml, const Element& collision, const std::string& model) {
   const Element* torsional = descend(&collision, {"surface", "friction", "torsional"});
   const bool has_patch = number_or(xml, torsional, "patch_radius", 0) != 0 ||
                          number_or(xml, torsional, "surface_radius", 0) != 0;
   if (!has_patch || xml.ignored_elements().ignores({"torsional"})) return;
-  xml.fail(*torsional, "<torsional> is not supported. Remove it." + suggest_ignoring("torsional"));
+  xml.ignored_elements().add_unsimulated("torsional friction of " + model, xml.where(*torsional));
 }
 
 /// Set kind and extent of a shape with triangles.
@@ -78,19 +78,17 @@ void measure_mesh(Obstacle& shape) {
   shape.center = (least + most) / 2;
 }
 
-void read_mesh(const Xml& xml, const Element& mesh, const Vector3d& scale, EmbeddedMeshes& meshes,
+/// Returns whether the mesh is found.
+bool read_mesh(const Xml& xml, const Element& mesh, const Vector3d& scale, EmbeddedMeshes& meshes,
                Obstacle& shape) {
   const Element* given = descend(&mesh, {"scale"});
   Vector3d own = Vector3d::Ones();
   if (given && !xml.text(*given).empty()) own = xml.vector_in_text(*given);
   if (!(own.cwiseAbs().minCoeff() > 0)) xml.fail(*given, "<scale> is 0. Correct it.");
   shape.mesh = meshes.find(mesh, own.cwiseProduct(scale));
-  if (!shape.mesh) {
-    xml.fail(mesh, "the mesh '" + mesh_uri(mesh) +
-                       "' is not found. Add the folder that contains its model to "
-                       "GAZEBO_MODEL_PATH.");
-  }
+  if (!shape.mesh) return false;
   measure_mesh(shape);
+  return true;
 }
 
 /// Read a closed polygon that is extruded along z.
@@ -118,8 +116,8 @@ void read_polyline(const Xml& xml, const Element& polyline, const Vector3d& scal
 }  // namespace
 
 std::optional<Obstacle> read_obstacle(const Xml& xml, const Element& collision,
-                                      const Vector3d& scale, bool is_static,
-                                      EmbeddedMeshes& meshes) {
+                                      const std::string& model, const Vector3d& scale,
+                                      bool is_static, EmbeddedMeshes& meshes) {
   const Element* geometry = descend(&collision, {"geometry"});
   const Element* kind = geometry ? geometry->FirstChildElement() : nullptr;
   if (!kind || kind->Name() == std::string("empty")) return {};
@@ -155,9 +153,17 @@ std::optional<Obstacle> read_obstacle(const Xml& xml, const Element& collision,
       xml.fail(*normal, "<normal> is zero. Write a direction, such as 0 0 1.");
     }
   } else if (name == "mesh") {
-    read_mesh(xml, *kind, scale, meshes, shape);
+    if (!read_mesh(xml, *kind, scale, meshes, shape)) {
+      const std::string uri = mesh_uri(*kind);
+      xml.ignored_elements().add_unsimulated(
+          "the missing mesh " + (uri.empty() ? "" : uri + " ") + "of " + model, shape.where);
+      return {};
+    }
   } else if (name == "polyline") {
     read_polyline(xml, *kind, scale, shape);
+  } else if (name == "heightmap") {
+    xml.ignored_elements().add_unsimulated("the heightmap of " + model, shape.where);
+    return {};
   } else {
     xml.fail(*kind, "an obstacle of the shape <" + name +
                         "> is not supported. Use box, sphere, cylinder, plane, polyline or mesh.");
@@ -169,7 +175,7 @@ std::optional<Obstacle> read_obstacle(const Xml& xml, const Element& collision,
   const Element* bounce = descend(&collision, {"surface", "bounce"});
   shape.restitution = coefficient_or(xml, bounce, "restitution_coefficient", 0);
   shape.restitution_speed = coefficient_or(xml, bounce, "threshold", no_bounce);
-  refuse_torsional_friction(xml, collision);
+  skip_torsional_friction(xml, collision, model);
   return shape;
 }
 

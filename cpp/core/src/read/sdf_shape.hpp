@@ -7,12 +7,14 @@
 
 namespace quadcore {
 
-/// Read a `<collision>` without its pose and names. Empty if nothing collides with it. Throws
-/// InputError for a shape that is not supported.
+/// Read a `<collision>` without its pose and names. Empty if nothing collides with it, or if it is
+/// recorded as not simulated: a heightmap, or a mesh without file. Throws InputError for another
+/// shape that is not supported.
+/// \param model  name of its model
 /// \param scale  scale of the model's shapes
 /// \param meshes  triangles of the collision's document
 std::optional<Obstacle> read_obstacle(const Xml& xml, const Xml::Element& collision,
-                                      const Vector3d& scale, bool is_static,
-                                      EmbeddedMeshes& meshes);
+                                      const std::string& model, const Vector3d& scale,
+                                      bool is_static, EmbeddedMeshes& meshes);
 
 }  // namespace quadcore

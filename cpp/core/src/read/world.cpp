@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "element_rows.hpp"
 #include "included_models.hpp"
 #include "quadcore/harmless_elements.hpp"
 #include "quadcore/plugin/error.hpp"
@@ -17,15 +18,8 @@ namespace quadcore {
 namespace {
 
 using Element = Xml::Element;
+using Row = ElementRow;
 using Handler = std::function<void(const Element&)>;
-
-/// An element of a world, named by its path below <world>. An element without a meaning is an
-/// alternative name or only groups other elements.
-struct Row {
-  TagSpec spec;
-  Handler read;
-};
-
 /// Elements that may repeat.
 const std::set<std::string> repeatable = {"include", "model", "physics", "plugin"};
 
@@ -96,81 +90,12 @@ class WorldReader {
     }
   }
 
-  /// Whether Gazebo takes the default because an element contains no text.
-  bool is_empty(const Element& e) {
-    if (!xml_.text(e).empty()) return false;
-    skip(e, "empty <" + std::string(e.Name()) + ">");
-    return true;
-  }
-
-  void skip(const Element& e, const std::string& what) {
-    xml_.ignored_elements().add_harmless(what, xml_.where(e));
-  }
-  /// Skip an element that only has an effect elsewhere.
-  void skip_here(const Element& e) {
-    skip(e, "<" + std::string(e.Name()) + "> in <" + e.Parent()->ToElement()->Name() + ">");
-  }
-
-  struct Range {
-    double min = -INFINITY, max = INFINITY;
-    bool open = false;  ///< excludes min itself
-  };
-  static Range above(double min, double max = INFINITY) { return {min, max, true}; }
-
-  Row number(std::string path, std::string unit, double& target, const Range& range,
-             std::string meaning) {
-    std::string fallback;
-    append_shortest(target, fallback);
-    T spec = T::number(std::move(path), std::move(unit), fallback, std::move(meaning));
-    spec.min = range.min, spec.max = range.max, spec.exclusive_min = range.open;
-    return {spec, [this, spec, &target](const Element& e) {
-              if (is_empty(e)) return;
-              target = xml_.number_in_text(e);
-              const bool is_above = spec.exclusive_min ? target > spec.min : target >= spec.min;
-              if (is_above && target <= spec.max) return;
-              xml_.fail(e, "<" + std::string(e.Name()) + "> is out of range. Use a number " +
-                               spec.interval() + ".");
-            }};
-  }
-
-  Row vector(std::string path, std::string unit, Vector3d& target, std::string meaning) {
-    std::string fallback;
-    for (int i = 0; i < 3; ++i) {
-      append_shortest(target[i], fallback.empty() ? fallback : fallback += ' ');
-    }
-    return {T::numbers(std::move(path), std::move(unit), fallback, std::move(meaning)).of(3),
-            [this, &target](const Element& e) {
-              if (!is_empty(e)) target = xml_.vector_in_text(e);
-            }};
-  }
-
-  Row word(const TagSpec& spec) {
-    return {spec, [this, spec](const Element& e) {
-              if (is_empty(e)) return;
-              const std::string text = xml_.text(e);
-              std::string alternatives;
-              for (const std::string& choice : spec.choices) {
-                if (text == choice) return;
-                alternatives += (alternatives.empty() ? "" : " or ") + choice;
-              }
-              xml_.fail(e, "<" + std::string(e.Name()) + "> is '" + text + "'. Use " +
-                               alternatives + ".");
-            }};
-  }
-
-  /// An element without a value to show in the table.
-  static Row other(std::string path, std::string meaning, Handler read) {
-    TagSpec spec = T::text(std::move(path), "", std::move(meaning));
-    spec.kind = TagKind::choice;
-    return {spec, std::move(read)};
-  }
-
   Row update_rate(const char* path, const char* meaning) {
-    Row row = number(path, "1/s", world_.real_time_update_rate, {}, meaning);
+    Row row = elements_.number(path, "1/s", world_.real_time_update_rate, {}, meaning);
     row.read = [this, read = row.read](const Element& e) {
       read(e);
       if (world_.real_time_update_rate >= 0) return;
-      skip(e, "negative <" + std::string(e.Name()) + ">");
+      elements_.skip(e, "negative <" + std::string(e.Name()) + ">");
       world_.real_time_update_rate = 0;
     };
     return row;
@@ -181,7 +106,7 @@ class WorldReader {
   /// \param is_set  returns whether the file has the other element, which wins
   Row moved(Row row, int minor, const std::function<bool()>& is_set) {
     row.read = [this, read = row.read, minor, is_set](const Element& e) {
-      if (!is_at_most_sdf(xml_, e, minor) || is_set()) return skip_here(e);
+      if (!is_at_most_sdf(xml_, e, minor) || is_set()) return elements_.skip_here(e);
       read(e);
     };
     return row;
@@ -198,9 +123,10 @@ class WorldReader {
     Origin& origin = world_.origin;
     const Handler ignored = [](const Element&) {};
     const Handler physics = [this](const Element& e) { read_physics(e); };
-    Row solver = word(T::choice("physics/ode/solver/type", {"quick", "world"},
-                                "solver of the constraints; both give the same result in flight, "
-                                "see [gazebo.md](gazebo.md)"));
+    Row solver =
+        elements_.word(T::choice("physics/ode/solver/type", {"quick", "world"},
+                                 "solver of the constraints; both give the same result in flight, "
+                                 "see [gazebo.md](gazebo.md)"));
     solver.read = [this, check = solver.read](const Element& e) {
       check(e);
       if (!xml_.text(e).empty()) world_.solver_type = xml_.text(e);
@@ -212,7 +138,7 @@ class WorldReader {
             .at_least(1)
             .at_most(1e6),
         [this](const Element& e) {
-          if (is_empty(e)) return;
+          if (elements_.is_empty(e)) return;
           const double value = xml_.number_in_text(e);
           if (!(value >= 1 && value <= 1e6) || value != std::floor(value)) {
             xml_.fail(e, "<iters> is out of range. Use a whole number from 1 to 1000000.");
@@ -220,67 +146,80 @@ class WorldReader {
           world_.solver_iterations = static_cast<int>(value);
         }};
     return {
-        vector("gravity", "m/s^2", world_.gravity_W, "gravity in world axes"),
-        vector("wind/linear_velocity", "m/s", world_.wind_W,
-               "velocity of the air in world axes; acts only with `<dragModel>` `chapter2`"),
-        other("atmosphere",
-              "attribute `type`, if given, must be `adiabatic`; used by plugins with a tag for it",
-              [this](const Element& e) { read_atmosphere(e); }),
-        number("atmosphere/temperature", "K", air.temperature, above(0),
-               "temperature of the air at z = 0"),
-        number("atmosphere/temperature_gradient", "K/m", air.temperature_gradient, {},
-               "change of the temperature with height"),
-        number("atmosphere/pressure", "Pa", air.pressure, {0}, "pressure of the air at z = 0"),
-        vector(
+        elements_.vector("gravity", "m/s^2", world_.gravity_W, "gravity in world axes"),
+        elements_.vector(
+            "wind/linear_velocity", "m/s", world_.wind_W,
+            "velocity of the air in world axes; acts only with `<dragModel>` `chapter2`"),
+        elements_.other(
+            "atmosphere",
+            "attribute `type`, if given, must be `adiabatic`; used by plugins with a tag for it",
+            [this](const Element& e) { read_atmosphere(e); }),
+        elements_.number("atmosphere/temperature", "K", air.temperature, elements_.above(0),
+                         "temperature of the air at z = 0"),
+        elements_.number("atmosphere/temperature_gradient", "K/m", air.temperature_gradient, {},
+                         "change of the temperature with height"),
+        elements_.number("atmosphere/pressure", "Pa", air.pressure, {0},
+                         "pressure of the air at z = 0"),
+        elements_.vector(
             "magnetic_field", "T", world_.magnetic_field_W,
             "the Earth's magnetic field in world axes (x east, y north, z up), for magnetometers"),
-        word(T::choice("spherical_coordinates/surface_model", {"EARTH_WGS84"},
-                       "reference ellipsoid")),
-        word(T::choice("spherical_coordinates/world_frame_orientation", {"ENU"},
-                       "world axes: x east, y north, z up")),
-        number("spherical_coordinates/latitude_deg", "deg", origin.latitude, {-90, 90},
-               "latitude of the world's origin, positive north, for RotorS' GPS receiver"),
-        number("spherical_coordinates/longitude_deg", "deg", origin.longitude, {-180, 180},
-               "longitude of the world's origin, positive east, for RotorS' GPS receiver"),
-        number("spherical_coordinates/elevation", "m", origin.altitude, {-1e5, 1e7},
-               "altitude of the world's origin"),
-        number("spherical_coordinates/heading_deg", "deg", origin.heading, {-360, 360},
-               "rotation of the world's axes; RotorS' GPS receiver accepts only 0"),
-        other("state",
-              "state of a saved world: its poses and scales replace those of the models, its "
-              "insertions are added and its deletions removed, and the time starts at `sim_time`",
-              ignored),
-        other("include/uri",
-              "`model://NAME` on GAZEBO_MODEL_PATH, in ~/.gazebo/models or in ROS packages, "
-              "`package://`, `file://`; `model://ground_plane` and `model://sun` are built in",
-              ignored),
-        other("include/name", "replaces the name of the model", ignored),
-        other("include/pose", "replaces the pose of the model", ignored),
-        other("include/static", "replaces `static` of the model", ignored),
-        other("plugin", "a module that only senses or publishes, see below; any other is an error",
-              [this](const Element& e) { skip_plugin(xml_, e); }),
-        other(
+        elements_.word(T::choice("spherical_coordinates/surface_model", {"EARTH_WGS84"},
+                                 "reference ellipsoid")),
+        elements_.word(T::choice("spherical_coordinates/world_frame_orientation", {"ENU"},
+                                 "world axes: x east, y north, z up")),
+        elements_.number(
+            "spherical_coordinates/latitude_deg", "deg", origin.latitude, {-90, 90},
+            "latitude of the world's origin, positive north, for RotorS' GPS receiver"),
+        elements_.number(
+            "spherical_coordinates/longitude_deg", "deg", origin.longitude, {-180, 180},
+            "longitude of the world's origin, positive east, for RotorS' GPS receiver"),
+        elements_.number("spherical_coordinates/elevation", "m", origin.altitude, {-1e5, 1e7},
+                         "altitude of the world's origin"),
+        elements_.number("spherical_coordinates/heading_deg", "deg", origin.heading, {-360, 360},
+                         "rotation of the world's axes; RotorS' GPS receiver accepts only 0"),
+        elements_.other(
+            "state",
+            "state of a saved world: its poses and scales replace those of the models, its "
+            "insertions are added and its deletions removed, and the time starts at `sim_time`",
+            ignored),
+        elements_.other(
+            "include/uri",
+            "`model://NAME` on GAZEBO_MODEL_PATH, in ~/.gazebo/models or in ROS packages, "
+            "`package://`, `file://`; `model://ground_plane` and `model://sun` are built in",
+            ignored),
+        elements_.other("include/name", "replaces the name of the model", ignored),
+        elements_.other("include/pose", "replaces the pose of the model", ignored),
+        elements_.other("include/static", "replaces `static` of the model", ignored),
+        elements_.other(
+            "plugin",
+            "skipped. A warning, the summary and the log name a module that does more than sense "
+            "or publish, see below",
+            [this](const Element& e) { skip_plugin(xml_, e, ""); }),
+        elements_.other(
             "model",
             "a model of boxes, cylinders, spheres, planes, meshes and polylines that is static or "
             "moves freely or on "
             "joints. The second of two models with one name is ignored, and so is a model without "
             "collision shapes",
             ignored),
-        other("physics", "attribute `type`, if given, must be `ode`; also written `physics:ode`",
-              physics),
-        other("physics:ode", "", physics),
-        moved(vector("physics/gravity", "m/s^2", world_.gravity_W,
-                     "up to SDF 1.5: `gravity`, unless the world has it; ignored from SDF 1.6 on, "
-                     "as in Gazebo"),
+        elements_.other("physics",
+                        "attribute `type`, if given, must be `ode`; also written `physics:ode`",
+                        physics),
+        elements_.other("physics:ode", "", physics),
+        moved(elements_.vector(
+                  "physics/gravity", "m/s^2", world_.gravity_W,
+                  "up to SDF 1.5: `gravity`, unless the world has it; ignored from SDF 1.6 on, "
+                  "as in Gazebo"),
               5, world_has("gravity")),
-        moved(vector("physics/magnetic_field", "T", world_.magnetic_field_W,
-                     "up to SDF 1.5: `magnetic_field`, unless the world has it; ignored from SDF "
-                     "1.6 on, as in Gazebo"),
+        moved(elements_.vector(
+                  "physics/magnetic_field", "T", world_.magnetic_field_W,
+                  "up to SDF 1.5: `magnetic_field`, unless the world has it; ignored from SDF "
+                  "1.6 on, as in Gazebo"),
               5, world_has("magnetic_field")),
-        number("physics/max_step_size", "s", world_.max_step_size, {shortest_step},
-               "time step, unless `--dt` or `dt=` sets it"),
-        moved(number("physics/ode/solver/dt", "s", world_.max_step_size, {shortest_step},
-                     "up to SDF 1.3: `physics/max_step_size`; ignored from SDF 1.4 on"),
+        elements_.number("physics/max_step_size", "s", world_.max_step_size, {shortest_step},
+                         "time step, unless `--dt` or `dt=` sets it"),
+        moved(elements_.number("physics/ode/solver/dt", "s", world_.max_step_size, {shortest_step},
+                               "up to SDF 1.3: `physics/max_step_size`; ignored from SDF 1.4 on"),
               3, physics_has("max_step_size")),
         update_rate("physics/real_time_update_rate",
                     "steps per second of wall-clock time for ROS nodes; 0 or less: as fast as "
@@ -289,32 +228,35 @@ class WorldReader {
         moved(update_rate("physics/update_rate",
                           "up to SDF 1.3: `real_time_update_rate`; ignored from SDF 1.4 on"),
               3, physics_has("real_time_update_rate")),
-        number("physics/real_time_factor", "", real_time_factor_, {},
-               "no effect, as in Gazebo; use `real_time_update_rate`"),
-        other("physics/max_contacts",
-              "upper limit of the contact points of a pair of shapes, a whole number",
-              [this](const Element& e) { read_max_contacts(e); }),
-        word(T::choice("physics/ode/solver/friction_model", {"pyramid_model"},
-                       "model of dry friction")),
+        elements_.number("physics/real_time_factor", "", real_time_factor_, {},
+                         "no effect, as in Gazebo; use `real_time_update_rate`"),
+        elements_.other("physics/max_contacts",
+                        "upper limit of the contact points of a pair of shapes, a whole number",
+                        [this](const Element& e) { read_max_contacts(e); }),
+        elements_.word(T::choice("physics/ode/solver/friction_model", {"pyramid_model"},
+                                 "model of dry friction")),
         solver,
         iterations,
-        number("physics/ode/solver/sor", "", world_.solver_sor, above(0, 2),
-               "over-relaxation of the quick solver"),
-        other("physics/ode/solver/use_dynamic_moi_rescaling", "must be `0`",
-              [this](const Element& e) {
-                if (is_empty(e) || xml_.text(e) == "0" || xml_.text(e) == "false") return;
-                if (xml_.ignored_elements().ignores({e.Name()})) return;
-                xml_.fail(e, "<use_dynamic_moi_rescaling> is '" + xml_.text(e) +
-                                 "', but the engines do not rescale moments of inertia. Write 0." +
-                                 suggest_ignoring(e.Name()));
-              }),
-        number("physics/ode/constraints/erp", "", world_.erp, {0, 1},
-               "fraction of a hinge's error that a step removes"),
-        number("physics/ode/constraints/cfm", "", world_.cfm, {0}, "softness of the hinges"),
-        number("physics/ode/constraints/contact_max_correcting_vel", "m/s",
-               world_.contact_max_correcting_vel, {0},
-               "upper limit of a contact's `maxVel`; in `gazebo11` also of a hinge's correcting "
-               "velocity, see [gazebo.md](gazebo.md#random-vehicles)"),
+        elements_.number("physics/ode/solver/sor", "", world_.solver_sor, elements_.above(0, 2),
+                         "over-relaxation of the quick solver"),
+        elements_.other("physics/ode/solver/use_dynamic_moi_rescaling",
+                        "1 is not simulated: no engine rescales moments of inertia",
+                        [this](const Element& e) {
+                          if (elements_.is_empty(e) || xml_.text(e) == "0" ||
+                              xml_.text(e) == "false")
+                            return;
+                          if (xml_.ignored_elements().ignores({e.Name()})) return;
+                          xml_.ignored_elements().add_unsimulated(e.Name(), xml_.where(e));
+                        }),
+        elements_.number("physics/ode/constraints/erp", "", world_.erp, {0, 1},
+                         "fraction of a hinge's error that a step removes"),
+        elements_.number("physics/ode/constraints/cfm", "", world_.cfm, {0},
+                         "softness of the hinges"),
+        elements_.number(
+            "physics/ode/constraints/contact_max_correcting_vel", "m/s",
+            world_.contact_max_correcting_vel, {0},
+            "upper limit of a contact's `maxVel`; in `gazebo11` also of a hinge's correcting "
+            "velocity, see [gazebo.md](gazebo.md#random-vehicles)"),
     };
   }
 
@@ -351,14 +293,14 @@ class WorldReader {
   }
 
   void read_physics(const Element& physics) {
-    if (&physics != physics_) return skip(physics, "a further <physics>");
+    if (&physics != physics_) return elements_.skip(physics, "a further <physics>");
     refuse_both(xml_.child(physics, "real_time_update_rate"), xml_.child(physics, "updateRate"));
     only_type(physics, "ode");
     read_children(physics, "physics/");
   }
 
   void read_max_contacts(const Element& e) {
-    if (is_empty(e)) return;
+    if (elements_.is_empty(e)) return;
     const double value = xml_.number_in_text(e);
     if (!(value >= 0 && value <= 1e6) || value != std::floor(value)) {
       xml_.fail(e, "<max_contacts> is out of range. Use a whole number from 0 to 1000000.");
@@ -391,6 +333,7 @@ class WorldReader {
   double real_time_factor_ = 1;
   const Element* physics_ = nullptr;  ///< the <physics> that is read
   Xml xml_;
+  ElementRows elements_{xml_};
   std::vector<Row> rows_ = table();
 };
 

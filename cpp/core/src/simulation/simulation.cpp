@@ -27,12 +27,15 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   load_plugins(model_, options);
   note_hooks();
   warn(world.ignored_elements.warning());
+  warn(world.ignored_elements.unsimulated_warning());
   if (!world.ignored_models.empty()) {
     warn("the vehicle passes through " + joined(world.ignored_models) +
          ", because these models of the world are ignored on request. Remove --ignore to keep "
          "them.");
   }
   ignored_ = ignored_in({&model_.ignored_elements, &world.ignored_elements});
+  const std::vector<std::string> unsimulated = world.ignored_elements.unsimulated();
+  ignored_.insert(ignored_.end(), unsimulated.begin(), unsimulated.end());
   engine_ = make_engine(options.engine, model_, world);
   for (const std::string& warning : engine_->warnings()) warn(warning);
   warnings_at_load_ = warnings_.size();

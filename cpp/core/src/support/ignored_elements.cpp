@@ -28,10 +28,18 @@ bool IgnoredElements::ignores(const std::vector<std::string>& names) {
 }
 
 void IgnoredElements::add_harmless(const std::string& what, const std::string& where) {
-  const auto same = std::find_if(harmless_.begin(), harmless_.end(),
+  add(harmless_, what, where);
+}
+
+void IgnoredElements::add_unsimulated(const std::string& what, const std::string& where) {
+  add(unsimulated_, what, where);
+}
+
+void IgnoredElements::add(Entries& entries, const std::string& what, const std::string& where) {
+  const auto same = std::find_if(entries.begin(), entries.end(),
                                  [&](const Entry& entry) { return entry.what == what; });
-  if (same == harmless_.end()) {
-    harmless_.push_back({what, {where}});
+  if (same == entries.end()) {
+    entries.push_back({what, {where}});
   } else if (same->places.back() != where) {  // list a macro's line once
     same->places.push_back(where);
   }
@@ -45,13 +53,26 @@ std::vector<std::string> IgnoredElements::ignored() const {
   return names;
 }
 
+std::string IgnoredElements::list(const Entries& entries) {
+  std::vector<std::string> all;
+  for (const Entry& entry : entries) all.push_back(entry.what + " (" + joined(entry.places) + ")");
+  return joined(all);
+}
+
 std::string IgnoredElements::warning() const {
-  std::vector<std::string> list;
-  for (const Entry& entry : harmless_) {
-    list.push_back(entry.what + " (" + joined(entry.places) + ")");
-  }
-  return list.empty() ? ""
-                      : "ignored, because it does not affect the motion: " + joined(list) + ".";
+  if (harmless_.empty()) return "";
+  return "ignored, because it does not affect the motion: " + list(harmless_) + ".";
+}
+
+std::vector<std::string> IgnoredElements::unsimulated() const {
+  std::vector<std::string> all;
+  for (const Entry& entry : unsimulated_) all.push_back(entry.what);
+  return all;
+}
+
+std::string IgnoredElements::unsimulated_warning() const {
+  if (unsimulated_.empty()) return "";
+  return "not simulated, though it may affect the motion: " + list(unsimulated_) + ".";
 }
 
 std::string suggest_ignoring(const std::string& name) {

@@ -20,6 +20,8 @@ class IgnoredElements {
   bool ignores(const std::vector<std::string>& names);
   /// Record something without effect on the motion, with its FILE:LINE.
   void add_harmless(const std::string& what, const std::string& where);
+  /// Record something that may affect the motion but is not simulated, with its FILE:LINE.
+  void add_unsimulated(const std::string& what, const std::string& where);
 
   /// Return the names to ignore that were found, in the user's order.
   std::vector<std::string> ignored() const;
@@ -27,16 +29,25 @@ class IgnoredElements {
   const std::set<std::string>& known() const { return known_; }
   /// Return a warning that lists everything without effect, with its locations; "" for nothing.
   std::string warning() const;
+  /// Return what may affect the motion but is not simulated, in the order of the file.
+  std::vector<std::string> unsimulated() const;
+  /// Return a warning that lists that, with its locations; "" for nothing.
+  std::string unsimulated_warning() const;
 
  private:
   struct Entry {
     std::string what;
     std::vector<std::string> places;
   };
+  using Entries = std::vector<Entry>;
+  static void add(Entries& entries, const std::string& what, const std::string& where);
+  static std::string list(const Entries& entries);
+
   std::vector<std::string> ignore_;
   std::vector<bool> met_;  ///< one for each name to ignore
   std::set<std::string> known_;
-  std::vector<Entry> harmless_;
+  Entries harmless_;
+  Entries unsimulated_;
 };
 
 /// Return the end of an error message that suggests --ignore NAME.
