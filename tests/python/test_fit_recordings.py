@@ -16,7 +16,8 @@ from quadcore.formats.recordings import Recording, read_recording
 from quadcore.formats.recordings.series import Series
 from quadcore.studies.fit.alignment import find_lags, find_mount, turn_pose
 from quadcore.studies.fit.cleaning import clean_recording
-from quadcore.studies.fit.coordinates import Coordinates
+from quadcore.studies.fit.coordinates import Coordinates, check_bodies
+from quadcore.studies.fit.fitted_model import FittedModel
 from quadcore.studies.fit.prepared import prepare_flight
 from quadcore.studies.fit.recorded import fit_recordings
 from quadcore.studies.fit.smoothing import estimate_noise, fit_locally
@@ -194,6 +195,18 @@ def test_a_start_that_no_body_has_is_refused():
             np.array([[0, np.inf]] * 3),
             {},
         )
+
+
+@pytest.mark.parametrize(("value", "exists"), [(1.6e-5, True), (6e-5, False)])
+def test_a_single_free_moment_that_no_body_has_is_an_error(value, exists):
+    free = ["frame.ixx", "drone_plugin.hubMomentCoeff"]
+    fitted = FittedModel(free, "crazyflie", "eigen", None, None, None, None, ())
+    model = fitted.make_model({"frame.ixx": value, "drone_plugin.hubMomentCoeff": 0.0})
+    if exists:
+        check_bodies(model, free)
+    else:
+        with pytest.raises(qc.FlightError, match="link frame: no body has the fitted moments"):
+            check_bodies(model, free)
 
 
 def test_measured_rotor_speeds_without_commands_give_back_the_truth(tmp_path):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..._core import InputError
+from ..._core import FlightError, InputError, Model
+from ...model.overrides import list_link_values
 
 _MOMENTS = ("ixx", "iyy", "izz")
 _PRODUCTS = ("ixy", "ixz", "iyz")
@@ -125,6 +126,28 @@ class Coordinates:
     def name(self, x: np.ndarray) -> Dict[str, float]:
         """Return the values by name."""
         return dict(zip(self.names, self.decode(x).tolist()))
+
+
+def check_bodies(model: Model, free: Iterable[str]) -> None:
+    """Check that links with free moments of inertia are bodies that can exist.
+
+    Raises
+    ------
+    FlightError
+        If no body has the moments of such a link.
+    """
+    written = list_link_values(model.document)
+    parts = [name.rpartition(".") for name in free if name in written]
+    for link in sorted({link for link, _, value in parts if value in (*_MOMENTS, *_PRODUCTS)}):
+        moments, products = (
+            np.array([float(written.get(f"{link}.{name}", "0")) for name in names])
+            for names in (_MOMENTS, _PRODUCTS)
+        )
+        if np.linalg.eigvalsh(_to_second_moments(moments, products))[0] < 0:
+            raise FlightError(
+                f"link {link}: no body has the fitted moments of inertia. Free ixx, iyy and izz "
+                "together, or correct the fixed ones."
+            )
 
 
 def _make_body(

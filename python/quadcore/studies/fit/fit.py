@@ -13,6 +13,7 @@ from ...simulation.log import Log
 from ...support import arguments
 from ...support.warning import suppress_warnings
 from . import record as records
+from .coordinates import check_bodies
 from .fitted_model import FittedModel
 from .horizons import Horizons
 from .identifiability import Combination, Identifiability, analyse
@@ -242,6 +243,8 @@ def _make_fit(
         residuals.append({name: (each[0][name], each[1][name]) for name in each[0]})
         motion.append({name: simulated[name] for name in (MEASURED, FITTED, START) if simulated})
     values = dict(zip(names, found.tolist()))
+    fitted_model = fitted.make_model(values)
+    check_bodies(fitted_model, values)
     return Fit(
         values,
         dict(zip(names, start.tolist())),
@@ -250,7 +253,7 @@ def _make_fit(
         train.horizons.shift * fitted.simulation.dt,
         residuals[0],
         residuals[1],
-        fitted.make_model(values),
+        fitted_model,
         join_motion(motion),
     )
 

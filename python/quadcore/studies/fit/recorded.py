@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 from ..._core import InputError, Model
+from .coordinates import check_bodies
 from .fitted_model import FittedModel
 from .flight_fit import FlightFit, Progress, fit_flights
 from .inputs import INPUTS, guess_speed
@@ -155,7 +156,9 @@ def fit_recordings(
     if judged:
         models = {"fitted model": (fitted, found.values), "initial model": (fitted, found.start)}
         judgement = judge_models(models, judged)
-    return RecordedFit(found, fitted.make_model(values), flights, judged, judgement)
+    written = fitted.make_model(values)
+    check_bodies(written, values)
+    return RecordedFit(found, written, flights, judged, judgement)
 
 
 def predict_recordings(
