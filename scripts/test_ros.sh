@@ -19,7 +19,7 @@ page_packages() {
 debian_packages="$(page_packages) librostest-dev python3-rostest"
 noetic_packages="ros-noetic-ros-base ros-noetic-rostest ros-noetic-tf2-msgs ros-noetic-diagnostic-msgs
   ros-noetic-nav-msgs ros-noetic-sensor-msgs ros-noetic-std-srvs ros-noetic-trajectory-msgs
-  ros-noetic-visualization-msgs ros-noetic-xacro
+  ros-noetic-visualization-msgs ros-noetic-dynamic-reconfigure ros-noetic-roslz4 ros-noetic-xacro
   pybind11-dev python3-dev python3-numpy python3-scipy python3-setuptools"
 
 as_root() {
@@ -150,7 +150,7 @@ SECONDS=0
 (run_in devel topics services lockstep playing logs log_per_flight clock several parameters faults \
   masters fly_from_python controller controller_faults set_points pid joystick launch plugin_by_others \
   plugin_topics sensors disturbances markers tutorial lee rotors rotors_topics rotors_hover gazebo \
-  gazebo_launch pages refusals links one_world waiting building alarms)
+  gazebo_launch pages refusals links one_world waiting building alarms tools hector)
 (run_in install launch playing fly_from_python plugin_by_others)
 [ ! -e $workspace/failed ]
 say "the ROS tests passed in $SECONDS s"

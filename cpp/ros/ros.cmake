@@ -4,7 +4,7 @@
 # Packages come after their dependencies, because a missing dependency ends the configuration.
 set(ros_packages
   message_generation roscpp std_msgs std_srvs geometry_msgs sensor_msgs nav_msgs rosgraph_msgs
-  diagnostic_msgs tf2_msgs trajectory_msgs visualization_msgs)
+  diagnostic_msgs tf2_msgs trajectory_msgs visualization_msgs dynamic_reconfigure roslz4)
 
 # The first python3 on PATH may not be the one of the ROS packages. catkin then ends the configuration,
 # even with QUIET. Some packages load catkin, so this check comes first.
@@ -50,6 +50,8 @@ else()
     string(REPLACE _ - dashed ${package})
     if(package STREQUAL message_generation)
       set(debian ros-message-generation)
+    elseif(package STREQUAL dynamic_reconfigure)
+      set(debian libdynamic-reconfigure-config-init-mutex-dev)
     else()
       set(debian lib${dashed}-dev)
     endif()
@@ -110,8 +112,8 @@ configure_file(${PROJECT_BINARY_DIR}/cpp/core/include/quadcore/plugin_interface.
 catkin_package(
   INCLUDE_DIRS cpp/core/include cpp/control/include ${CATKIN_DEVEL_PREFIX}/include
   LIBRARIES quadcore
-  CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
-                 sensor_msgs std_msgs std_srvs tf2_msgs trajectory_msgs visualization_msgs
+  CATKIN_DEPENDS diagnostic_msgs dynamic_reconfigure geometry_msgs message_runtime nav_msgs roscpp
+                 rosgraph_msgs roslz4 sensor_msgs std_msgs std_srvs tf2_msgs trajectory_msgs visualization_msgs
   CFG_EXTRAS ${CMAKE_CURRENT_LIST_DIR}/quadcore-target.cmake)
 export(TARGETS quadcore NAMESPACE quadcore::
        FILE ${CATKIN_DEVEL_PREFIX}/lib/cmake/quadcore/quadcore.cmake)
@@ -166,7 +168,8 @@ endif()
 # Not catkin_install_python, which would fix the interpreter: these scripts use the one with quadcore.
 install(PROGRAMS scripts/ros/bag_player.py scripts/ros/expand_model.py
                  scripts/ros/flight_buttons.py scripts/ros/fly_from_python.py
-                 scripts/ros/play_commands.py scripts/ros/spawn_model scripts/ros/with_frames.sh
+                 scripts/ros/hector_names.py scripts/ros/play_commands.py
+                 scripts/ros/show_in_rviz.py scripts/ros/spawn_model scripts/ros/view
         DESTINATION lib/quadcore)
 install(FILES scripts/ros/recorded_commands.py DESTINATION lib/quadcore)
 
@@ -177,7 +180,7 @@ if(CATKIN_ENABLE_TESTING)
     foreach(test topics services lockstep playing logs log_per_flight clock several parameters faults
                  masters launch fly_from_python controller controller_faults set_points pid joystick
                  sensors disturbances markers tutorial lee rotors rotors_topics rotors_hover gazebo
-                 gazebo_launch pages refusals links one_world waiting building)
+                 gazebo_launch pages refusals links one_world waiting building alarms tools hector)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

@@ -9,9 +9,10 @@ import harness
 import rospy
 from gazebo_msgs.msg import ModelStates
 from gazebo_msgs.srv import GetPhysicsProperties
-from harness import Recording
+from harness import Process, Recording
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
 
@@ -39,10 +40,33 @@ class TestGazeboLaunch(unittest.TestCase):
 
     def test_what_gazebo_ros_knows_and_this_does_not_is_refused(self):
         spawn = [harness.executable("spawn_model"), "-model", "quad"]
-        for words in (["-sdf", "-file", "a.sdf"], ["-urdf"], ["-urdf", "-database", "coke_can"]):
+        refused = "is not supported: "
+        for words, why in (
+            (["-sdf", "-file", "a.sdf"], "-sdf " + refused),
+            (["-urdf"], "-param -file"),
+            (["-param", "robot_description"], "required: -urdf"),
+            (["-urdf", "-database", "coke_can"], "-database " + refused),
+            (["-urdf", "-stdin"], "-stdin " + refused),
+        ):
             ended = subprocess.run([*spawn, *words], stderr=subprocess.PIPE, text=True, check=False)
             self.assertEqual(ended.returncode, 2)
             self.assertIn("spawn_model: error:", ended.stderr)
+            self.assertIn(why, ended.stderr)
+
+    def test_a_second_model_waits_for_the_first_and_begins_with_turned_rotors(self):
+        second = ("-urdf", "-param", "robot_description", "-model", "second", "-b")
+        turned = ("-J", "rotor1", "0.5", "-J", "rotor3", "-0.25", "-robot_namespace", "second")
+        world = ("-gazebo_namespace", "/gazebo")
+        joint_states = Recording("/second/joint_states", JointState)
+        spawned = Process("spawn_model", *second, *turned, *world, "-wait", "quad")
+        with spawned, joint_states as joints:
+            angles = joints.wait_for_count(1)[0].position
+        for angle, given in zip(angles, (0.5, 0, -0.25, 0)):
+            self.assertAlmostEqual(angle, given, places=12)
+        with Process("spawn_model", *second, "-wait", "nobody", "-timeout", "0.2") as lonely:
+            status, error = lonely.result()
+        self.assertEqual(status, 1)
+        self.assertIn("error: -wait: model 'nobody' does not exist after 0.2 s.", error)
 
 
 if __name__ == "__main__":

@@ -124,7 +124,7 @@ class TestLogs(unittest.TestCase):
         """A limit of the size of files stands for the disk's."""
         flown = self.folder / "whole.csv"
         fly(flown)
-        for suffix, most in (("bag", 1_300_000), ("mat", 100_000)):
+        for suffix, most in (("bag", 250_000), ("mat", 100_000)):
             log = self.folder / f"cut.{suffix}"
 
             def limit(node, most=most):

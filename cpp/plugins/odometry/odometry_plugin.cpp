@@ -120,6 +120,10 @@ PluginDescriptor describe() {
           T::flag("publishTf", "true",
                   "whether the ROS node publishes tf world->drone for topic odom")
               .from("A.6"),
+          T::text("frame_id", "", "frame of the pose in messages of the ROS node")
+              .or_absent("the node's world_frame"),
+          T::text("child_frame_id", "", "frame of the vehicle in messages of the ROS node")
+              .or_absent("the node's vehicle_frame"),
           deviation("positionNoise", "m", position),
           deviation("orientationNoise", "rad", turn),
           deviation("linearVelocityNoise", "m/s", linear),

@@ -15,6 +15,7 @@
 #include "master_check.hpp"
 #include "messages.hpp"
 #include "no_delay.hpp"
+#include "reconfigure.hpp"
 #include "ros_types.hpp"
 #include "set_points.hpp"
 #include "warning_limiter.hpp"
@@ -34,19 +35,18 @@ class ControllerNode {
  public:
   ControllerNode(ros::NodeHandle& nh, ControllerSettings settings)
       : setup_(settings.setup),
-        controller_(setup_.controller(settings.vehicle)),
-        inner_loop_(setup_.describe_model(settings.vehicle),
-                    control::select_values(control::InnerLoop::table(), setup_.gains.values),
-                    setup_.spins),
+        vehicle_(std::move(settings.vehicle)),
+        controller_(setup_.controller(vehicle_)),
+        inner_loop_(make_inner_loop(setup_)),
         schedule_(setup_.schedule(controller_.rotors())),
         active_aim_(settings.reference),
-        set_points_(nh, settings.velocity_timeout, active_aim_),
+        set_points_(nh, settings.frames.world, settings.velocity_timeout, active_aim_),
         plant_(std::move(settings.plant)),
         dt_(settings.dt) {
     ros::NodeHandle own("~");
     command_.data.resize(controller_.rotors());
-    set_frames(reference_, make_frame_prefix(nh) + vehicle_name);
-    error_.header.frame_id = world_frame;
+    set_frames(reference_, {settings.frames.world, settings.frames.vehicle});
+    error_.header.frame_id = settings.frames.world;
     reference_publisher_ = own.advertise<nav_msgs::Odometry>("reference", queue_size);
     error_publisher_ = own.advertise<geometry_msgs::Vector3Stamped>("error", queue_size);
     command_publisher_ =
@@ -112,6 +112,42 @@ class ControllerNode {
     }
   }
 
+  control::InnerLoop make_inner_loop(const control::ControllerSetup& setup) const {
+    return {setup.describe_model(vehicle_),
+            control::select_values(control::InnerLoop::table(), setup.gains.values), setup.spins};
+  }
+
+  /// Returns the gains for rqt_reconfigure, with sliders to four times the initial value if a gain
+  /// has no maximum.
+  std::vector<Adjustable> adjustables() {
+    std::vector<Adjustable> values;
+    for (const TagSpec& spec : control::Controller::table(setup_.gains.law)) {
+      if (spec.fallback.empty()) continue;  // no default value
+      const double initial = gain(spec);
+      const double reach = initial == 0 ? 1 : 4 * std::abs(initial);
+      values.push_back({spec.name, spec.meaning, spec.kind == TagKind::flag,
+                        std::isfinite(spec.min) ? spec.min : -reach,
+                        std::isfinite(spec.max) ? spec.max : reach,
+                        [this, spec] { return gain(spec); },
+                        [this, name = spec.name](double value) { set_gain(name, value); }});
+    }
+    return values;
+  }
+
+  double gain(const TagSpec& spec) const {
+    const auto found = setup_.gains.values.find(spec.name);
+    return found == setup_.gains.values.end() ? control::default_of(spec) : found->second;
+  }
+
+  /// Replaces a gain. The controller keeps its state, for example its integrals.
+  void set_gain(const std::string& name, double value) {
+    control::ControllerSetup changed = setup_;
+    changed.gains.values[name] = value;
+    controller_ = changed.controller(vehicle_);
+    inner_loop_ = make_inner_loop(changed);
+    setup_ = changed;
+  }
+
   /// Restarts at the first message, and when the time was set back.
   void begin(double step) {
     schedule_state_.assign(schedule_.state_size(), 0);
@@ -153,6 +189,7 @@ class ControllerNode {
   }
 
   control::ControllerSetup setup_;
+  VehicleDescription vehicle_;
   control::Controller controller_;
   control::InnerLoop inner_loop_;
   control::Schedule schedule_;
@@ -172,6 +209,7 @@ class ControllerNode {
   ros::Publisher command_publisher_, reference_publisher_, error_publisher_;
   ros::Subscriber odometry_subscriber_;
   ros::WallTimer check_;
+  Reconfigure reconfigure_{adjustables()};
 };
 
 void run() {

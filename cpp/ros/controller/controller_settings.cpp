@@ -87,6 +87,7 @@ ControllerSettings read_controller_settings(const ros::NodeHandle& nh) {
                               simulation.dt(),
                               flown.flag("lockstep", false),
                               resolve_command_topic(nh, plant, simulation.model()),
+                              choose_frames(nh, plant.frames, simulation),
                               watch};
   if (shape && shape->filename == reference_file) {
     settings.reference = control::reference_of(shape->parameters, simulation.model());

@@ -18,6 +18,7 @@ struct ControllerSettings {
   double dt;                  ///< step topic of the plant [s]
   bool lockstep;              ///< whether the plant waits for an answer to each odometry message
   std::string command_topic;  ///< of the plant
+  Frames frames;              ///< of the plant
   PlantWatch plant;           ///< constructed before the parameters were read
 };
 

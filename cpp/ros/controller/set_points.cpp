@@ -34,11 +34,6 @@ double read_yaw(const char* what, const geometry_msgs::Quaternion& q) {
   return rpy_from_quaternion(read_orientation(what, q)).z();
 }
 
-void check_frame(const std_msgs::Header& header) {
-  if (header.frame_id.empty() || header.frame_id == world_frame) return;
-  throw InputError("frame_id is '" + header.frame_id + "'. Give it in '" + world_frame + "'.");
-}
-
 double read_thrust(const geometry_msgs::Vector3& thrust) {
   const Vector3d f_F = check_finite("thrust", thrust);
   if (f_F.x() != 0 || f_F.y() != 0) {
@@ -68,8 +63,9 @@ control::PathPoint read_point(const trajectory_msgs::MultiDOFJointTrajectoryPoin
 
 }  // namespace
 
-SetPoints::SetPoints(ros::NodeHandle& nh, double velocity_timeout, ActiveAim& active_aim)
-    : velocity_timeout_(velocity_timeout), active_aim_(active_aim) {
+SetPoints::SetPoints(ros::NodeHandle& nh, std::string frame, double velocity_timeout,
+                     ActiveAim& active_aim)
+    : frame_(std::move(frame)), velocity_timeout_(velocity_timeout), active_aim_(active_aim) {
   take(nh, "command/pose", &SetPoints::pose);
   take(nh, "command/trajectory", &SetPoints::trajectory);
   take(nh, "command/velocity", &SetPoints::velocity);
@@ -90,6 +86,11 @@ void SetPoints::take(ros::NodeHandle& nh, const std::string& topic,
       };
   subscribers_.push_back(nh.subscribe<Message>(topic, queue_size, callback, ros::VoidConstPtr(),
                                                ros::TransportHints().tcpNoDelay()));
+}
+
+void SetPoints::check_frame(const std_msgs::Header& header) const {
+  if (header.frame_id.empty() || header.frame_id == frame_) return;
+  throw InputError("frame_id is '" + header.frame_id + "'. Give it in '" + frame_ + "'.");
 }
 
 void SetPoints::pose(const geometry_msgs::PoseStamped& message) {

@@ -18,8 +18,9 @@ namespace quadcore::node {
 /// Receives set points on topics `command/...`. Invalid messages are rejected and reported.
 class SetPoints {
  public:
+  /// \param frame  the only frame of poses; an empty one in a message is the same
   /// \param velocity_timeout  time after which a velocity ends in a hover [s]
-  SetPoints(ros::NodeHandle& nh, double velocity_timeout, ActiveAim& active_aim);
+  SetPoints(ros::NodeHandle& nh, std::string frame, double velocity_timeout, ActiveAim& active_aim);
 
  private:
   template <class Message>
@@ -32,6 +33,10 @@ class SetPoints {
   void attitude(const AttitudeThrust& message);
   void rates(const RateThrust& message);
 
+  /// Throws InputError for another frame.
+  void check_frame(const std_msgs::Header& header) const;
+
+  const std::string frame_;
   double velocity_timeout_;
   ActiveAim& active_aim_;
   WarningLimiter limiter_;

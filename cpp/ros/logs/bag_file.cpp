@@ -1,9 +1,11 @@
 #include "bag_file.hpp"
 
+#include <roslz4/lz4s.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 namespace quadcore::node {
 namespace {
@@ -29,6 +31,18 @@ std::string with_size(const std::string& bytes) {
 
 std::string make_field(const char* name, const std::string& value) {
   return with_size(name + ("=" + value));
+}
+
+std::string compress(std::string bytes) {
+  // LZ4 adds at most 1/255 and some bytes per block.
+  std::string packed(bytes.size() + bytes.size() / 200 + 1024, '\0');
+  auto size = static_cast<unsigned int>(packed.size());
+  constexpr int block_size = 6;  // like rosbag: 1 MiB
+  const int status = roslz4_buffToBuffCompress(&bytes[0], static_cast<unsigned int>(bytes.size()),
+                                               &packed[0], &size, block_size);
+  if (status != ROSLZ4_OK) throw std::runtime_error("roslz4 cannot compress a part of the bag");
+  packed.resize(size);
+  return packed;
 }
 
 std::string make_kind(char number) { return make_field("op", std::string(1, number)); }
@@ -85,10 +99,10 @@ void BagFile::write_chunk() {
     index += with_size(places);
     entries.clear();
   }
-  const std::string head = make_field("compression", "none") + make_kind(chunk) +
+  const std::string head = make_field("compression", "lz4") + make_kind(chunk) +
                            make_field("size", to_bytes(static_cast<std::uint32_t>(chunk_.size())));
-  is_whole_ = put(with_size(head)) && put(to_bytes(static_cast<std::uint32_t>(chunk_.size()))) &&
-              put(chunk_) && put(index) && std::fflush(file_.get()) == 0;
+  is_whole_ = put(with_size(head)) && put(with_size(compress(chunk_))) && put(index) &&
+              std::fflush(file_.get()) == 0;
   chunk_.clear();
   if (!is_whole_) return;
   chunks_.push_back(std::move(written));

@@ -10,8 +10,8 @@
 #include "file.hpp"
 
 /// \file
-/// Uncompressed bags of ROS 1 (wiki.ros.org/Bags/Format/2.0). The rosbag library needs headers of
-/// encryption plugins, which Debian 12 only has for ROS 2.
+/// Bags of ROS 1 with chunks compressed by LZ4 (wiki.ros.org/Bags/Format/2.0). The header of
+/// rosbag_storage includes pluginlib for encryption, which Debian 12 packages for ROS 2 only.
 
 namespace quadcore::node {
 

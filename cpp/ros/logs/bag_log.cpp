@@ -21,12 +21,11 @@ ros::Time to_bag_time(const ros::Time& time) { return std::max(time, ros::TIME_M
 }  // namespace
 
 BagLog::BagLog(const std::string& path, const Simulation& simulation, LogRow row,
-               const ros::NodeHandle& nh, const std::string& frame_prefix)
+               const ros::NodeHandle& nh, const Frames& frames)
     : path_(path), active_(path + ".active"), row_(std::move(row)), bag_(active_) {
   if (!bag_.is_open()) throw InputError(describe_open_failure(path_));
-  const std::string vehicle = frame_prefix + vehicle_name;
-  set_frames(odometry_, vehicle);
-  tf_.transforms.push_back(make_identity_transform(world_frame, vehicle));
+  set_frames(odometry_, {frames.world, frames.vehicle});
+  tf_.transforms.push_back(make_identity_transform(frames.world, frames.vehicle));
   joints_.name = simulation.model().joint_names();
   clock_number_ = bag_.add<rosgraph_msgs::Clock>("/clock");
   truth_number_ = bag_.add<nav_msgs::Odometry>(nh.resolveName(truth_topic));

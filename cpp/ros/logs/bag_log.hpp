@@ -22,7 +22,7 @@ class BagLog final : public FlightLog {
  public:
   /// Throws InputError if the file cannot be written.
   BagLog(const std::string& path, const Simulation& simulation, LogRow row,
-         const ros::NodeHandle& nh, const std::string& frame_prefix);
+         const ros::NodeHandle& nh, const Frames& frames);
   void add(const Simulation& simulation) override;
   void close() override;
 

@@ -50,16 +50,16 @@ const std::vector<double>& LogRow::fill(const Simulation& simulation) {
 }
 
 std::unique_ptr<LogPerFlight> open_log(const std::string& path, const Simulation& simulation,
-                                       const std::vector<std::string>& topics,
-                                       const ros::NodeHandle& nh, const std::string& frame_prefix) {
+                                       const std::vector<std::string>& topics, std::int64_t every,
+                                       const ros::NodeHandle& nh, const Frames& frames) {
   const bool is_mat = ends_with(path, ".mat"), is_bag = ends_with(path, ".bag");
   const auto open = [=, &simulation, &nh]() -> std::unique_ptr<FlightLog> {
     LogRow row(simulation, topics);
     if (is_mat) return std::make_unique<MatLog>(path, simulation, std::move(row));
-    if (is_bag) return std::make_unique<BagLog>(path, simulation, std::move(row), nh, frame_prefix);
+    if (is_bag) return std::make_unique<BagLog>(path, simulation, std::move(row), nh, frames);
     return std::make_unique<CsvLog>(path, simulation, std::move(row));
   };
-  return std::make_unique<LogPerFlight>(path, open);
+  return std::make_unique<LogPerFlight>(path, every, open);
 }
 
 std::string describe_open_failure(const std::string& path) {

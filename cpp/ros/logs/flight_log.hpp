@@ -2,10 +2,12 @@
 
 #include <ros/ros.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "frames.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::node {
@@ -36,7 +38,7 @@ class LogRow {
 class FlightLog {
  public:
   virtual ~FlightLog() = default;
-  /// Adds a row, after the start and each step.
+  /// Adds a row.
   virtual void add(const Simulation& simulation) = 0;
   /// Writes the rest.
   virtual void close() = 0;
@@ -60,12 +62,13 @@ bool is_log(const std::string& path);
 
 /// Opens a log with one file per flight. The suffix determines the format; a pipe gets CSV. The log
 /// keeps references to simulation and node.
+/// \param every  steps per row
 /// \param nh  namespace of the topics in a bag
-/// \param frame_prefix  prefix of the vehicle's frames in a bag
+/// \param frames  frames of the messages in a bag
 /// Throws InputError if the file cannot be written or a topic is not declared.
 std::unique_ptr<LogPerFlight> open_log(const std::string& path, const Simulation& simulation,
-                                       const std::vector<std::string>& topics,
-                                       const ros::NodeHandle& nh, const std::string& frame_prefix);
+                                       const std::vector<std::string>& topics, std::int64_t every,
+                                       const ros::NodeHandle& nh, const Frames& frames);
 
 /// Describes that a file cannot be written, with the reason in errno.
 std::string describe_open_failure(const std::string& path);

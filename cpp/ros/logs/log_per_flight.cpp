@@ -20,18 +20,18 @@ std::filesystem::path find_free_name(const std::filesystem::path& file) {
 
 }  // namespace
 
-LogPerFlight::LogPerFlight(const std::string& path,
+LogPerFlight::LogPerFlight(const std::string& path, std::int64_t every,
                            std::function<std::unique_ptr<FlightLog>()> open)
-    : path_(path), open_(std::move(open)), log_(open_()) {}
+    : path_(path), every_(every), open_(std::move(open)), log_(open_()) {}
 
 void LogPerFlight::add(const Simulation& simulation, bool jumped) {
   // A followed clock may be set back without a jump of the motion, but times increase in a log.
-  if (rows_ > 0 && (jumped || simulation.time() <= time_)) start_new_file();
+  if (states_ > 0 && (jumped || simulation.time() <= time_)) start_new_file();
   if (!log_) return;
-  log_->add(simulation);
+  if (states_ % every_ == 0) log_->add(simulation);
   if (!log_->error().empty()) fail(log_->error());
   time_ = simulation.time();
-  ++rows_;
+  ++states_;
 }
 
 void LogPerFlight::close() {
@@ -46,9 +46,9 @@ void LogPerFlight::start_new_file() {
   const auto kind = std::filesystem::status(path_, error).type();
   using Kind = std::filesystem::file_type;
   if (kind != Kind::regular && kind != Kind::not_found) return;  // a pipe cannot be renamed
-  if (rows_ > 1) keep_previous();
+  if (states_ > 1) keep_previous();
   if (!error_.empty()) log_.reset();  // otherwise the previous log would be overwritten
-  rows_ = 0;
+  states_ = 0;
   if (!log_) return;
   log_.reset();
   try {

@@ -15,10 +15,12 @@ namespace quadcore::node {
 class LogPerFlight {
  public:
   /// \param path  path of the log
+  /// \param every  steps per row
   /// \param open  opens a new log
   /// Rethrows exceptions of `open`.
-  LogPerFlight(const std::string& path, std::function<std::unique_ptr<FlightLog>()> open);
-  /// Adds a row, after the start, each step and, with `jumped`, each jump.
+  LogPerFlight(const std::string& path, std::int64_t every,
+               std::function<std::unique_ptr<FlightLog>()> open);
+  /// Call after the start, each step and, with `jumped`, each jump. Adds a row if one is due.
   void add(const Simulation& simulation, bool jumped);
   /// Writes the rest.
   void close();
@@ -31,11 +33,12 @@ class LogPerFlight {
   void fail(const std::string& what);
 
   const std::string path_;
+  const std::int64_t every_;  ///< steps per row
   const std::function<std::unique_ptr<FlightLog>()> open_;
   std::unique_ptr<FlightLog> log_;  ///< null after a log could not be kept or opened
   std::string error_;               ///< the first error
-  double time_ = 0;                 ///< time of the last row [s]
-  std::int64_t rows_ = 0;           ///< since the start or the last jump
+  double time_ = 0;                 ///< time of the last step [s]
+  std::int64_t states_ = 0;         ///< since the start or the last jump, with the first one
 };
 
 }  // namespace quadcore::node

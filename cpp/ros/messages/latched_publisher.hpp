@@ -49,6 +49,13 @@ class LatchedPublisher {
     kept_->publisher.publish(message);
   }
 
+  /// Stores a message for new subscribers only.
+  void keep(const Message& message) {
+    const std::lock_guard<std::mutex> lock(kept_->mutex);
+    kept_->last = message;
+    kept_->any = true;
+  }
+
   /// Sends the last message again to all.
   void repeat() {
     const std::lock_guard<std::mutex> lock(kept_->mutex);

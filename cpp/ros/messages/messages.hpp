@@ -15,9 +15,6 @@
 
 namespace quadcore::node {
 
-constexpr const char* world_frame = "world";
-/// The thesis' name of the vehicle's frame.
-constexpr const char* vehicle_name = "drone";
 /// Queue size of a topic, for slow subscribers.
 constexpr std::uint32_t queue_size = 1000;
 

@@ -19,8 +19,8 @@ using node::from_ros;
 using node::set_frames;
 using node::to_ros;
 
-void set_frames(geometry_msgs::WrenchStamped& message, const std::string& frame) {
-  message.header.frame_id = frame;
+void set_frames(geometry_msgs::WrenchStamped& message, const MessageFrames& frames) {
+  message.header.frame_id = frames.own;
 }
 void to_ros(const messages::Wrench& wrench, geometry_msgs::WrenchStamped& message) {
   set_vector(message.wrench.force, wrench.force.data());
@@ -30,7 +30,7 @@ messages::Wrench from_ros(const geometry_msgs::WrenchStamped& message) {
   return {vector_of(message.wrench.force), vector_of(message.wrench.torque)};
 }
 
-void set_frames(geometry_msgs::Vector3Stamped&, const std::string&) {
+void set_frames(geometry_msgs::Vector3Stamped&, const MessageFrames&) {
 }  // the frame is that of the publisher
 void to_ros(const messages::Vector& vector, geometry_msgs::Vector3Stamped& message) {
   set_vector(message.vector, vector.value.data());
@@ -48,9 +48,9 @@ constexpr bool is_measured =
 template <class Message, class Ros>
 class TypedOutlet final : public Outlet {
  public:
-  TypedOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& frame)
+  TypedOutlet(ros::NodeHandle& nh, const std::string& name, const MessageFrames& frames)
       : publisher_(nh, name, queue_size) {
-    set_frames(message_, frame);
+    set_frames(message_, frames);
   }
   void send(const Topic& topic, const ros::Time& stamp) override {
     message_.header.stamp = is_measured<Message> ? node::to_ros(topic.stamp) : stamp;
@@ -66,8 +66,8 @@ class TypedOutlet final : public Outlet {
 /// Publishes a fix: the position on NAME, and the velocity on NAME/velocity.
 class FixOutlet final : public Outlet {
  public:
-  FixOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& frame)
-      : place_(nh, name, frame), velocity_(nh, name + "/velocity", frame) {}
+  FixOutlet(ros::NodeHandle& nh, const std::string& name, const MessageFrames& frames)
+      : place_(nh, name, frames), velocity_(nh, name + "/velocity", frames) {}
   void send(const Topic& topic, const ros::Time& stamp) override {
     place_.send(topic, stamp);
     velocity_.send(topic, stamp);
@@ -105,7 +105,7 @@ ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& name, const Ac
 /// A kind of message and its ROS types.
 struct Transport {
   MessageKind kind;
-  std::unique_ptr<Outlet> (*outlet)(ros::NodeHandle&, const std::string&, const std::string&);
+  std::unique_ptr<Outlet> (*outlet)(ros::NodeHandle&, const std::string&, const MessageFrames&);
   ros::Subscriber (*inlet)(ros::NodeHandle&, const std::string&, const Take&);
 };
 
@@ -113,8 +113,8 @@ struct Transport {
 template <class Message, class Out>
 Transport outgoing() {
   return {messages::kind_of<Message>(),
-          [](ros::NodeHandle& nh, const std::string& name, const std::string& frame)
-              -> std::unique_ptr<Outlet> { return std::make_unique<Out>(nh, name, frame); },
+          [](ros::NodeHandle& nh, const std::string& name, const MessageFrames& frames)
+              -> std::unique_ptr<Outlet> { return std::make_unique<Out>(nh, name, frames); },
           nullptr};
 }
 
@@ -168,9 +168,9 @@ void add_dimension(std_msgs::Float64MultiArray& array, const std::string& label,
   array.layout.dim.push_back(dimension);
 }
 
-void set_frames(nav_msgs::Odometry& message, const std::string& vehicle_frame) {
-  message.header.frame_id = world_frame;
-  message.child_frame_id = vehicle_frame;
+void set_frames(nav_msgs::Odometry& message, const MessageFrames& frames) {
+  message.header.frame_id = frames.parent;
+  message.child_frame_id = frames.own;
 }
 
 void to_ros(const messages::Odometry& odometry, nav_msgs::Odometry& message) {
@@ -199,9 +199,9 @@ messages::Odometry from_ros(const nav_msgs::Odometry& message) {
 }
 
 std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
-                                    const std::string& frame) {
+                                    const MessageFrames& frames) {
   const Transport* const transport = find_transport(topic.kind);
-  if (transport) return transport->outlet(nh, topic.path, frame);
+  if (transport) return transport->outlet(nh, topic.path, frames);
   return std::make_unique<ArrayOutlet>(nh, topic);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "frames.hpp"
 #include "quadcore/plugin/topics.hpp"
 
 /// \file
@@ -29,9 +30,8 @@ using Take = std::function<void(const std::vector<double>&)>;
 /// Throws InputError if the node already has a topic of that name.
 void check_name_is_free(ros::NodeHandle& nh, const std::string& name);
 /// Advertises a topic under its own name.
-/// \param frame  tf frame of the numbers, or of the vehicle for an odometry
 std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
-                                    const std::string& frame);
+                                    const MessageFrames& frames);
 /// Subscribes to a topic under its own name; `take` runs in the callback thread of `nh`.
 /// Throws InputError if the node already has a topic of that name, or if no ROS type contains it.
 ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& take);
@@ -39,7 +39,7 @@ ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& 
 /// Adds a dimension to an array, with its size and label.
 void add_dimension(std_msgs::Float64MultiArray& array, const std::string& label, std::size_t size);
 /// Sets the frames of an odometry message.
-void set_frames(nav_msgs::Odometry& message, const std::string& vehicle_frame);
+void set_frames(nav_msgs::Odometry& message, const MessageFrames& frames);
 /// Fills pose, twist and their covariances. A variance of 0 becomes the minimum variance.
 void to_ros(const messages::Odometry& odometry, nav_msgs::Odometry& message);
 messages::Odometry from_ros(const nav_msgs::Odometry& message);

@@ -54,9 +54,9 @@ class RateOutlet final : public Outlet {
 /// Publishes the velocity of a satellite receiver.
 class GroundSpeedOutlet final : public Outlet {
  public:
-  GroundSpeedOutlet(ros::NodeHandle& nh, const std::string& name)
+  GroundSpeedOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& frame)
       : publisher_(nh, name, queue_size) {
-    message_.header.frame_id = world_frame;
+    message_.header.frame_id = frame;
   }
   void send(const Topic& topic, const ros::Time&) override {
     message_.header.stamp = node::to_ros(topic.stamp);
@@ -90,7 +90,7 @@ class WindOutlet final : public Outlet {
 class OdometryOutlet final : public Outlet {
  public:
   OdometryOutlet(ros::NodeHandle& nh, const Topic& topic, const LoadedPlugin& writer,
-                 const std::string& frame, bool tf)
+                 const MessageFrames& frames, bool tf)
       : odometry_publisher_(nh, topic.path, queue_size) {
     // The prefix of its topics, from the module's own namespace.
     const std::string& own = writer.parameters.text("odometryTopic");
@@ -101,9 +101,9 @@ class OdometryOutlet final : public Outlet {
     position_publisher_ = {nh, name("positionTopic"), queue_size};
     transform_publisher_ = {nh, name("transformTopic"), queue_size};
     if (tf) tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100);
-    set_frames(odometry_, frame);
+    set_frames(odometry_, frames);
     tf_.transforms.resize(1);
-    tf_.transforms.front().child_frame_id = frame;
+    tf_.transforms.front().child_frame_id = frames.own;
   }
 
   void send(const Topic& topic, const ros::Time&) override {
@@ -141,22 +141,22 @@ class OdometryOutlet final : public Outlet {
 }  // namespace
 
 std::unique_ptr<Outlet> make_rotors_outlet(ros::NodeHandle& nh, const Topic& topic,
-                                           const LoadedPlugin& writer, const std::string& frame,
+                                           const LoadedPlugin& writer, const MessageFrames& frames,
                                            const std::string& root_frame) {
   if (writer.filename.rfind(of_rotors, 0) != 0) return nullptr;
   const std::string& kind = topic.kind.name;
   if (kind == messages::speeds(0).name) {
-    return std::make_unique<ActuatorsOutlet>(nh, topic.path, frame);
+    return std::make_unique<ActuatorsOutlet>(nh, topic.path, frames.own);
   }
   if (kind == messages::motor_speed().name) return std::make_unique<RateOutlet>(nh, topic.path);
   if (kind == messages::WindSpeed::kind) {
-    return std::make_unique<WindOutlet>(nh, topic.path, frame);
+    return std::make_unique<WindOutlet>(nh, topic.path, frames.own);
   }
   if (kind == messages::GroundSpeed::kind) {
-    return std::make_unique<GroundSpeedOutlet>(nh, topic.path);
+    return std::make_unique<GroundSpeedOutlet>(nh, topic.path, frames.parent);
   }
   if (writer.filename != odometry_file) return nullptr;
-  return std::make_unique<OdometryOutlet>(nh, topic, writer, frame, frame != root_frame);
+  return std::make_unique<OdometryOutlet>(nh, topic, writer, frames, frames.own != root_frame);
 }
 
 std::string direct_motor_topic(const Simulation& simulation) {

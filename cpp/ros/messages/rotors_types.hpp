@@ -15,10 +15,9 @@
 namespace quadcore::node {
 
 /// Advertises a topic of a RotorS module under its own name; null if the topic has no RotorS type.
-/// \param frame  tf frame of the numbers, or of the body of an odometry
 /// \param root_frame  a frame that is already in tf
 std::unique_ptr<Outlet> make_rotors_outlet(ros::NodeHandle& nh, const Topic& topic,
-                                           const LoadedPlugin& writer, const std::string& frame,
+                                           const LoadedPlugin& writer, const MessageFrames& frames,
                                            const std::string& root_frame);
 
 /// Returns the topic on which RotorS' motors receive speeds directly; "" if the model has no such

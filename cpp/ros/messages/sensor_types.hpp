@@ -7,13 +7,12 @@
 #include <sensor_msgs/MagneticField.h>
 #include <sensor_msgs/NavSatFix.h>
 
-#include <string>
-
+#include "frames.hpp"
 #include "messages.hpp"
 #include "quadcore/plugin/messages.hpp"
 
 /// \file
-/// Sensor messages in ROS types. `frame` is the tf frame of the sensor's link.
+/// Sensor messages in ROS types. Their own frame is that of the sensor's link.
 
 namespace quadcore::node {
 
@@ -21,12 +20,12 @@ namespace quadcore::node {
 constexpr double unknown_variance = 1e9;
 
 template <class Ros>
-void set_frames(Ros& message, const std::string& frame) {
-  message.header.frame_id = frame;
+void set_frames(Ros& message, const MessageFrames& frames) {
+  message.header.frame_id = frames.own;
 }
 
-inline void set_frames(sensor_msgs::Imu& message, const std::string& frame) {
-  message.header.frame_id = frame;
+inline void set_frames(sensor_msgs::Imu& message, const MessageFrames& frames) {
+  message.header.frame_id = frames.own;
   message.orientation_covariance[0] = -1;  // no orientation
 }
 inline void to_ros(const messages::Imu& imu, sensor_msgs::Imu& message) {
@@ -87,8 +86,9 @@ inline void to_ros(const messages::Fix& fix, sensor_msgs::NavSatFix& message) {
   message.position_covariance_type = sensor_msgs::NavSatFix::COVARIANCE_TYPE_DIAGONAL_KNOWN;
 }
 
-inline void set_frames(geometry_msgs::TwistWithCovarianceStamped& message, const std::string&) {
-  message.header.frame_id = world_frame;
+inline void set_frames(geometry_msgs::TwistWithCovarianceStamped& message,
+                       const MessageFrames& frames) {
+  message.header.frame_id = frames.parent;
 }
 inline void to_ros(const messages::Fix& fix, geometry_msgs::TwistWithCovarianceStamped& message) {
   set_vector(message.twist.twist.linear, fix.velocity.data());

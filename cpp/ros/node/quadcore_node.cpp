@@ -1,7 +1,9 @@
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -16,6 +18,8 @@
 #include "no_delay.hpp"
 #include "parameter_watch.hpp"
 #include "quadcore/plugin/error.hpp"
+#include "quadcore/text.hpp"
+#include "reconfigure.hpp"
 #include "services.hpp"
 #include "settings.hpp"
 #include "vehicle_markers.hpp"
@@ -34,10 +38,31 @@ void log_description(const Simulation& simulation) {
   }
 }
 
+/// Parameter in the vehicle's namespace.
+constexpr const char* frames_parameter = "vehicle_frames";
+
+/// Maximum of the slider of the real-time factor.
+constexpr double most_shown_factor = 20;
+
 ros::NodeHandle start_node() {
   ros::NodeHandle nh;
   send_without_delay();
   return nh;
+}
+
+/// Sets the initial angles of rotors.
+void turn_rotors(Simulation& simulation, const std::map<std::string, double>& angles) {
+  const std::vector<std::string> names = simulation.model().joint_names();
+  VehicleState state = simulation.state();
+  for (const auto& [name, angle] : angles) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      throw InputError("parameter ~joints: the model has no rotor joint '" + name + "'. It has " +
+                       joined(names) + ".");
+    }
+    state.rotor_angle[found - names.begin()] = angle;
+  }
+  simulation.set_state(state);
 }
 
 /// Makes the simulation and logs its description.
@@ -49,6 +74,7 @@ Simulation make_vehicle(const Settings& settings, const World& world) {
   Simulation simulation = make_simulation(settings.plant, world, [](const Model& model) {
     return std::vector<PluginElement>{GazeboWrenches::plugin(model)};
   });
+  if (!settings.joint_angles.empty()) turn_rotors(simulation, settings.joint_angles);
   log_description(simulation);
   return simulation;
 }
@@ -56,6 +82,19 @@ Simulation make_vehicle(const Settings& settings, const World& world) {
 void say_error(const std::string& error) {
   std::fprintf(stderr, "error: %s\n", error.c_str());
   std::fflush(stderr);
+}
+
+/// Publishes the frames of a vehicle as a parameter, for rviz, which reads them from its file only.
+Frames publish_frames(const ros::NodeHandle& nh, const Frames& frames, const Model& model) {
+  const bool links_have_prefix =
+      frames.of_link(model.links.front().name) == model.links.front().name;
+  nh.setParam(frames_parameter,
+              std::map<std::string, std::string>{
+                  {"fixed", frames.map.empty() ? frames.world : frames.map},
+                  {"world", frames.world},
+                  {"vehicle", frames.vehicle},
+                  {"prefix", links_have_prefix ? "" : nh.getNamespace().substr(1)}});
+  return frames;
 }
 
 /// The node. Its members are in the order of their construction: the simulation, the clock, topics,
@@ -84,11 +123,29 @@ class Node {
     return topics;
   }
 
+  /// Returns the values that rqt_reconfigure shows.
+  std::vector<Adjustable> adjustables() {
+    std::vector<Adjustable> values;
+    values.push_back({"paused", "whether the flight is paused", true, 0, 1,
+                      [this] { return static_cast<double>(flight_.report().paused); },
+                      [this](double paused) { flight_.set_paused(paused != 0); }});
+    if (clock_) {  // otherwise the leader sets the pace
+      values.push_back({"real_time_factor", "simulated seconds per second; 0: no limit", false, 0,
+                        most_shown_factor, [this] { return flight_.report().real_time_factor; },
+                        [this](double factor) {
+                          const XmlRpc::XmlRpcValue value(factor);
+                          flight_.set_real_time_factor(to_non_negative("real_time_factor", value));
+                        }});
+    }
+    return values;
+  }
+
   /// Returns the parameters that other nodes read. They are set again after a restart of the
   /// master.
   MasterWatch::Parameters public_parameters() const {
     MasterWatch::Parameters parameters;
-    for (const std::string& key : {std::string(use_sim_time), settings_.plant.description}) {
+    for (const std::string& key :
+         {std::string(use_sim_time), settings_.plant.description, std::string(frames_parameter)}) {
       if (!key.empty()) nh_.getParam(key, parameters[key]);
     }
     return parameters;
@@ -118,7 +175,9 @@ class Node {
     if (follower_) follower_->follow(flight_);
     spinner_.start();
     services_.emplace(nh_, simulation_, flight_, model_, wrenches_, neighbours_.get());
-    master_watch_.emplace(services_->names(), public_parameters(), [this] { parameters_.poll(); });
+    std::vector<std::string> services = services_->names();
+    services.push_back(reconfigure_.service());
+    master_watch_.emplace(services, public_parameters(), [this] { parameters_.poll(); });
   }
 
   /// Runs until the signal to end.
@@ -138,6 +197,7 @@ class Node {
       stopped = report.commands_stopped;
       if (!is_alarm && Wall::now() < due) continue;
       diagnostics_.send(report, commands_.refusals());
+      reconfigure_.update();
       if (!is_alarm) due += std::chrono::seconds(1);
     }
   }
@@ -166,16 +226,17 @@ class Node {
   ros::Publisher claim_ = claim_model(nh_, model_);
 
   // This node either leads the clock and has neighbours that follow it, or it follows.
-  LatchedPublisher<rosgraph_msgs::Clock> clock_ = take_part_in_clock(nh_, settings_.clock);
+  ClockPublisher clock_ = take_part_in_clock(nh_, settings_.clock, settings_.clock_rate);
   std::unique_ptr<ClockFollower> follower_ =
       clock_ ? nullptr : std::make_unique<ClockFollower>(nh_, simulation_.dt());
   std::unique_ptr<GazeboNeighbours> neighbours_ =
       clock_ ? std::make_unique<GazeboNeighbours>(nh_) : nullptr;
 
-  std::string prefix_ = make_frame_prefix(nh_);
+  Frames frames_ = publish_frames(nh_, choose_frames(nh_, settings_.plant.frames, simulation_),
+                                  simulation_.model());
   GazeboStates gazebo_states_{nh_, simulation_, model_, neighbours_.get()};
-  VehicleMarkers markers_{nh_, simulation_, prefix_};
-  Broadcast broadcast_{nh_, simulation_, clock_, prefix_, gazebo_states_, settings_.rotor_tf};
+  VehicleMarkers markers_{nh_, simulation_, frames_};
+  Broadcast broadcast_{nh_, simulation_, clock_, frames_, gazebo_states_, settings_.rotor_tf};
   std::vector<CommandTopic> topics_ = find_command_topics(nh_, settings_.plant, simulation_);
   TopicInlets inlets_{nh_, simulation_, simulated_topics(), settings_.flight.lockstep};
   GazeboWrenches wrenches_;
@@ -186,7 +247,8 @@ class Node {
                      topics_,
                      settings_.log.empty()
                          ? nullptr
-                         : open_log(settings_.log, simulation_, settings_.log_topics, nh_, prefix_),
+                         : open_log(settings_.log, simulation_, settings_.log_topics,
+                                    settings_.log_every, nh_, frames_),
                      follower_.get()};
 
   FlightThread flight_{simulation_, flight_settings(), listener_};
@@ -194,6 +256,7 @@ class Node {
       clock_ ? std::make_unique<ClockLeader>(nh_, flight_, clock_) : nullptr;
   CommandSubscriber commands_{nh_, topics_, settings_.flight.lockstep, flight_};
   ParameterWatch parameters_{flight_, !clock_, initial_parameters_};
+  Reconfigure reconfigure_{adjustables()};
   Diagnostics diagnostics_{nh_, flight_.report(), join_names(topics_)};
 
   ros::AsyncSpinner spinner_{1};

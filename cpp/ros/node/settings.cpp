@@ -1,5 +1,8 @@
 #include "settings.hpp"
 
+#include <cmath>
+#include <cstdlib>
+
 #include "flight_log.hpp"
 #include "private_parameters.hpp"
 #include "quadcore/plugin/error.hpp"
@@ -12,6 +15,23 @@ ClockRole parse_clock_role(const std::string& text) {
   if (text == "lead") return ClockRole::lead;
   if (text == "follow") return ClockRole::follow;
   refuse_parameter("clock", "auto, lead or follow");
+}
+
+/// Parses NAME=ANGLE ...
+std::map<std::string, double> parse_angles(const std::string& parameter,
+                                           const std::vector<std::string>& words) {
+  std::map<std::string, double> angles;
+  for (const std::string& word : words) {
+    const auto equals = word.find('=');
+    char* end = nullptr;
+    const double angle =
+        equals == std::string::npos ? NAN : std::strtod(word.c_str() + equals + 1, &end);
+    if (!std::isfinite(angle) || *end != '\0' || end == word.c_str() + equals + 1) {
+      refuse_parameter(parameter, "JOINT=ANGLE ..., in rad, not '" + word + "'");
+    }
+    angles[word.substr(0, equals)] = angle;
+  }
+  return angles;
 }
 
 }  // namespace
@@ -28,9 +48,12 @@ Settings read_settings(const ros::NodeHandle& nh) {
   if (s.log.empty() && !s.log_topics.empty()) {
     throw InputError("parameter ~log_topics: has no effect without a log. Set ~log.");
   }
+  s.log_every = static_cast<std::int64_t>(p.whole("log_every", 1, 1, 1000000));
+  s.joint_angles = parse_angles("joints", p.words("joints"));
   s.verbose = p.flag("verbose", false);
   s.rotor_tf = p.flag("rotor_tf", false);
   s.clock = parse_clock_role(p.text("clock", "auto"));
+  s.clock_rate = p.non_negative("pub_clock_frequency", "; 0 is after each step").value_or(0);
   s.real_time_factor = p.non_negative("real_time_factor", "; 0 is as fast as possible");
   s.flight.paused = p.flag("paused", false);
   s.flight.lockstep = p.flag("lockstep", false);

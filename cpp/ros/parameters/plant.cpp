@@ -1,6 +1,5 @@
 #include "plant.hpp"
 
-#include <cmath>
 #include <filesystem>
 #include <system_error>
 
@@ -59,6 +58,7 @@ Plant read_plant(PrivateParameters& p) {
   const std::string built_in_worlds = p.text("shipped_worlds", "worlds");
   plant.world = find_world(p.text("world", ""), built_in_worlds, plant.folder);
   plant.name = p.text("name", "");
+  plant.frames = {p.text("map_frame", ""), p.text("world_frame", ""), p.text("vehicle_frame", "")};
   plant.drag = p.text("drag", "all");
   plant.ignore = p.words("ignore");
 
@@ -71,11 +71,7 @@ Plant read_plant(PrivateParameters& p) {
   }
   if (dt > 0) s.dt = dt;
   constexpr double max_seed = 9007199254740992;  // all smaller whole numbers are exact as doubles
-  const double seed = p.number("seed", 0);
-  if (seed != std::floor(seed) || seed < 0 || seed > max_seed) {
-    refuse_parameter("seed", "a whole number from 0 to 9007199254740992");
-  }
-  s.seed = static_cast<std::uint64_t>(seed);
+  s.seed = static_cast<std::uint64_t>(p.whole("seed", 0, 0, max_seed));
   s.spawn.xyz = {p.number("x", 0), p.number("y", 0), p.number("z", 0.1)};
   s.spawn.rpy = {p.number("roll", 0), p.number("pitch", 0), p.number("yaw", 0)};
   return plant;
@@ -131,15 +127,6 @@ std::string choose_model_name(const Plant& plant, const Model& model) {
 std::string resolve_command_topic(const ros::NodeHandle& nh, const Plant& plant,
                                   const Model& model) {
   return nh.resolveName(choose_model_name(plant, model) + "/" + Simulation::command_topic);
-}
-
-std::string make_frame_prefix(const ros::NodeHandle& nh) {
-  const std::string space = nh.getNamespace().substr(1);
-  return space.empty() ? "" : space + "/";
-}
-
-std::string make_frame_name(const std::string& prefix, const std::string& link) {
-  return link.rfind(prefix, 0) == 0 ? link : prefix + link;
 }
 
 }  // namespace quadcore::node

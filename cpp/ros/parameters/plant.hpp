@@ -9,6 +9,7 @@
 #include "private_parameters.hpp"
 #include "quadcore/plugin/document.hpp"
 #include "quadcore/simulation.hpp"
+#include "vehicle_frames.hpp"
 
 namespace quadcore::node {
 
@@ -20,6 +21,7 @@ struct Plant {
   std::string folder;               ///< base of relative paths; "" = the node's working folder
   std::string world;                ///< path; "" = Gazebo's empty world, with a ground
   std::string name;                 ///< name of the model; "" = the URDF's
+  FrameNames frames;                ///< names of tf frames
   std::string drag;                 ///< the active drag, or "all", "none"
   std::vector<std::string> ignore;  ///< names to ignore in model and world
   SimulationOptions simulation;
@@ -48,9 +50,5 @@ std::string choose_model_name(const Plant& plant, const Model& model);
 /// Returns the topic of commands: below the model's name, as in Gazebo.
 std::string resolve_command_topic(const ros::NodeHandle& nh, const Plant& plant,
                                   const Model& model);
-/// Returns the prefix of a vehicle's frames: "uav1/" in the namespace uav1.
-std::string make_frame_prefix(const ros::NodeHandle& nh);
-/// Returns the tf frame of a link. The names of RotorS' links already contain the namespace.
-std::string make_frame_name(const std::string& prefix, const std::string& link);
 
 }  // namespace quadcore::node

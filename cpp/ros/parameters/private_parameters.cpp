@@ -101,6 +101,17 @@ std::optional<double> PrivateParameters::non_negative(const std::string& name,
   return to_non_negative(full_name(name), value, hint);
 }
 
+double PrivateParameters::whole(const std::string& name, double fallback, double least,
+                                double most) {
+  const double value = number(name, fallback);
+  if (value != std::floor(value) || value < least || value > most) {
+    char range[64];
+    std::snprintf(range, sizeof range, "a whole number from %.0f to %.0f", least, most);
+    refuse_parameter(name, range);
+  }
+  return value;
+}
+
 std::optional<double> PrivateParameters::positive(const std::string& name) {
   const std::optional<double> value = number(name);
   if (value && !(*value > 0)) refuse_parameter(full_name(name), "a number > 0");

@@ -39,6 +39,8 @@ class PrivateParameters {
   double number(const std::string& name, double fallback) {
     return number(name).value_or(fallback);
   }
+  /// Reads a whole number in [least, most].
+  double whole(const std::string& name, double fallback, double least, double most);
   std::optional<double> non_negative(const std::string& name, const std::string& hint = "");
   std::optional<double> positive(const std::string& name);
   /// Reads words separated by blanks, or a list of texts, which may contain blanks.

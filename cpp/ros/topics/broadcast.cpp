@@ -1,7 +1,6 @@
 #include "broadcast.hpp"
 
 #include "messages.hpp"
-#include "plant.hpp"
 #include "quadcore/urdf_tree.hpp"
 #include "vehicle_messages.hpp"
 
@@ -12,59 +11,58 @@ constexpr bool kept = true;  ///< latched
 
 }  // namespace
 
-Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
-                     const LatchedPublisher<rosgraph_msgs::Clock>& clock,
-                     const std::string& frame_prefix, GazeboStates& gazebo_states, bool rotor_tf)
+Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const ClockPublisher& clock,
+                     const Frames& frames, GazeboStates& gazebo_states, bool rotor_tf)
     : odometry_topic_(simulation),
       clock_publisher_(clock),
-      path_(nh),
+      path_(nh, frames.world),
       gazebo_states_(gazebo_states) {
   joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>(joint_states_topic, 100, kept);
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
   if (odometry_topic_.exists()) {
-    advertise_odometry(nh, frame_prefix, simulation, rotor_tf);
+    advertise_odometry(nh, frames, simulation, rotor_tf);
   } else {
     ROS_WARN(
         "No plugin of the model publishes odometry on topic odom. The node publishes neither odom "
         "nor tf.");
   }
-  send_static_frames(nh, model, frame_prefix);
+  send_static_frames(nh, model, frames);
   // Last, so that no plugin takes the name of one of these topics.
-  others_.emplace(nh, simulation, frame_prefix, OdometryTopic::name);
+  others_.emplace(nh, simulation, frames, OdometryTopic::name);
 }
 
-void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
+void Broadcast::advertise_odometry(ros::NodeHandle& nh, const Frames& frames,
                                    const Simulation& simulation, bool rotor_tf) {
   const Model& model = simulation.model();
   const bool of_plugin = simulation.topics().find(truth_topic) >= 0;  // as for RotorS' vehicles
   odometry_publisher_ = {nh, OdometryTopic::name, 1000};
   if (!of_plugin) truth_publisher_ = nh.advertise<nav_msgs::Odometry>(truth_topic, 1000, kept);
-  const std::string vehicle_frame = frame_prefix + vehicle_name;
-  set_frames(odometry_, vehicle_frame);
-  set_frames(truth_, vehicle_frame);
+  for (nav_msgs::Odometry* const message : {&odometry_, &truth_}) {
+    set_frames(*message, {frames.world, frames.vehicle});
+  }
   if (!odometry_topic_.publishes_tf()) return;
   tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
-  transforms_.transforms.push_back(make_identity_transform(world_frame, vehicle_frame));
-  if (rotor_tf) add_rotor_frames(model, frame_prefix);
+  transforms_.transforms.push_back(make_identity_transform(frames.world, frames.vehicle));
+  if (rotor_tf) add_rotor_frames(model, frames);
 }
 
 /// Publishes links on joints that do not move, which robot_state_publisher would not send without
 /// joint states.
-void Broadcast::send_static_frames(ros::NodeHandle& nh, const Model& model,
-                                   const std::string& frame_prefix) {
+void Broadcast::send_static_frames(ros::NodeHandle& nh, const Model& model, const Frames& frames) {
   tf2_msgs::TFMessage message;
-  const std::string vehicle_frame = frame_prefix + vehicle_name;
-  const std::string root_frame = make_frame_name(frame_prefix, model.links.front().name);
-  // The root of the URDF is its root link; the root of tf is the thesis' "drone".
-  if (tf_publisher_ && root_frame != vehicle_frame) {
-    message.transforms.push_back(make_identity_transform(vehicle_frame, root_frame));
+  const std::string root_frame = frames.of_link(model.links.front().name);
+  if (tf_publisher_ && !frames.map.empty()) {
+    message.transforms.push_back(make_identity_transform(frames.map, frames.world));
+  }
+  // The root of the URDF is its root link; that of tf is the frame of the vehicle.
+  if (tf_publisher_ && root_frame != frames.vehicle) {
+    message.transforms.push_back(make_identity_transform(frames.vehicle, root_frame));
   }
   for (const UrdfJoint& joint : model.urdf->joints) {
     if (!joint.fixed && !joint.locked) continue;
-    message.transforms.push_back(make_transform(make_frame_name(frame_prefix, joint.parent),
-                                                make_frame_name(frame_prefix, joint.child),
-                                                joint.pose));
+    message.transforms.push_back(
+        make_transform(frames.of_link(joint.parent), frames.of_link(joint.child), joint.pose));
   }
   if (message.transforms.empty()) return;
   static_tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf_static", 100, kept);
@@ -73,7 +71,7 @@ void Broadcast::send_static_frames(ros::NodeHandle& nh, const Model& model,
 
 void Broadcast::send(const Simulation& simulation, bool jumped) {
   clock_.clock = to_ros(simulation.time());
-  if (clock_publisher_) clock_publisher_.publish(clock_);
+  if (clock_publisher_) clock_publisher_.publish(clock_, jumped);
   gazebo_states_.send(simulation);
   others_->send(simulation, clock_.clock, jumped);
   if (odometry_topic_.exists()) {
@@ -86,7 +84,7 @@ void Broadcast::send(const Simulation& simulation, bool jumped) {
 
 void Broadcast::show(const Simulation& simulation) {
   clock_.clock = to_ros(simulation.time());
-  if (clock_publisher_) clock_publisher_.publish(clock_);
+  if (clock_publisher_) clock_publisher_.publish(clock_, true);
   send_joint_states(simulation.state());
   send_truth(simulation.state());
   if (tf_publisher_) send_transforms(simulation);
@@ -121,12 +119,12 @@ void Broadcast::send_truth(const VehicleState& state) {
   truth_publisher_.publish(truth_);
 }
 
-void Broadcast::add_rotor_frames(const Model& model, const std::string& frame_prefix) {
+void Broadcast::add_rotor_frames(const Model& model, const Frames& frames) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    transforms_.transforms.push_back(
-        make_transform(make_frame_name(frame_prefix, model.links[joint.parent].name),
-                       make_frame_name(frame_prefix, model.links[i + 1].name), joint.pose));
+    transforms_.transforms.push_back(make_transform(frames.of_link(model.links[joint.parent].name),
+                                                    frames.of_link(model.links[i + 1].name),
+                                                    joint.pose));
   }
 }
 

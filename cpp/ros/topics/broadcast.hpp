@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "clock_publisher.hpp"
 #include "gazebo_states.hpp"
 #include "latched_publisher.hpp"
 #include "message_rate.hpp"
@@ -20,20 +21,18 @@
 
 namespace quadcore::node {
 
-/// Publishes the topics of the original package: /clock each step, and odom and tf world->drone
-/// with each message of the odometry plugin. It also publishes ground_truth/odometry, joint_states,
-/// path for rviz, and every other topic of the plugins, before the odometry that a node may answer.
-/// Stamps are simulation time; those of odom are values of /clock. Topics are latched, so a paused
-/// flight is visible.
+/// Publishes the topics of the original package: /clock, by default each step, and odom and tf
+/// world->drone with each message of the odometry plugin. It also publishes ground_truth/odometry,
+/// joint_states, path for rviz, and every other topic of the plugins, before the odometry that a
+/// node may answer. Stamps are simulation time; those of odom are values of /clock. Topics are
+/// latched, so a paused flight is visible.
 class Broadcast {
  public:
   /// \param clock  publisher of the clock; empty = another node publishes it
-  /// \param frame_prefix  prefix of the vehicle's frames, "" or for example "uav1/"
   /// \param rotor_tf  whether tf also contains the rotors' links. Those of robot_state_publisher
   /// are not latched.
-  Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
-            const LatchedPublisher<rosgraph_msgs::Clock>& clock, const std::string& frame_prefix,
-            GazeboStates& gazebo_states, bool rotor_tf);
+  Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const ClockPublisher& clock,
+            const Frames& frames, GazeboStates& gazebo_states, bool rotor_tf);
 
   /// Call after a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);
@@ -43,13 +42,13 @@ class Broadcast {
   void offer(const Simulation& simulation);
 
  private:
-  void advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
-                          const Simulation& simulation, bool rotor_tf);
-  void send_static_frames(ros::NodeHandle& nh, const Model& model, const std::string& frame_prefix);
+  void advertise_odometry(ros::NodeHandle& nh, const Frames& frames, const Simulation& simulation,
+                          bool rotor_tf);
+  void send_static_frames(ros::NodeHandle& nh, const Model& model, const Frames& frames);
   void send_odometry(const Simulation& simulation, const Topic& topic);
   void fill_odometry(const Topic& topic);
   void send_truth(const VehicleState& state);
-  void add_rotor_frames(const Model& model, const std::string& frame_prefix);
+  void add_rotor_frames(const Model& model, const Frames& frames);
   void send_transforms(const Simulation& simulation);
   void send_joint_states(const VehicleState& state);
 
@@ -57,7 +56,7 @@ class Broadcast {
   double sent_ = 0;  ///< count of the last odometry message sent
   MessageRate joint_states_due_{50};
 
-  LatchedPublisher<rosgraph_msgs::Clock> clock_publisher_;
+  ClockPublisher clock_publisher_;
   OfferingPublisher<nav_msgs::Odometry> odometry_publisher_;
   ros::Publisher truth_publisher_;
   ros::Publisher tf_publisher_;
@@ -71,7 +70,7 @@ class Broadcast {
   rosgraph_msgs::Clock clock_;
   nav_msgs::Odometry odometry_;
   nav_msgs::Odometry truth_;
-  tf2_msgs::TFMessage transforms_;  ///< world->drone, then the rotors
+  tf2_msgs::TFMessage transforms_;  ///< the vehicle in the world, then the rotors
   sensor_msgs::JointState joint_states_;
 };
 

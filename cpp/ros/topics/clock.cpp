@@ -24,9 +24,9 @@ constexpr double reporting_period = longest_lead / 4;
 
 }  // namespace
 
-LatchedPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role) {
+ClockPublisher take_part_in_clock(ros::NodeHandle& nh, ClockRole role, double rate) {
   if (role == ClockRole::follow) return {};
-  LatchedPublisher<rosgraph_msgs::Clock> publisher(nh, "/clock", 1000, Resend::to_all);
+  ClockPublisher publisher(nh, rate);
   const std::string leader = find_earlier_publisher("/clock");
   if (leader.empty()) {
     // Like gazebo_ros; before the services exist, so that a node that waits for a service finds it.
@@ -42,14 +42,14 @@ LatchedPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, C
   return {};
 }
 
-ClockLeader::ClockLeader(ros::NodeHandle& nh, FlightThread& flight,
-                         const LatchedPublisher<rosgraph_msgs::Clock>& clock)
+ClockLeader::ClockLeader(ros::NodeHandle& nh, FlightThread& flight, const ClockPublisher& clock)
     : flight_(flight),
       clock_(clock),
       subscriber_(nh.subscribe(followers_topic, 1000, &ClockLeader::take, this,
                                ros::TransportHints().tcpNoDelay())) {}
 
 void ClockLeader::take(const std_msgs::Header& needs) {
+  clock_.serve_follower();
   if (needs.stamp.isZero()) return clock_.repeat();
   const std::lock_guard<std::mutex> lock(mutex_);
   followers_[needs.frame_id] = {needs.stamp.toSec(), Wall::now()};

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "clock_publisher.hpp"
 #include "flight_thread.hpp"
-#include "latched_publisher.hpp"
 
 namespace quadcore::node {
 
@@ -29,9 +29,10 @@ constexpr char use_sim_time[] = "/use_sim_time";
 /// Takes this node's role in the shared clock. The leader publishes /clock and sets /use_sim_time
 /// unless it is set; the others make their steps by it. If several nodes start at once, the first
 /// registered one leads.
+/// \param rate  messages of a leader per second of simulation time; 0 = after each step
 /// \return publisher of /clock; empty if this node follows
 /// Throws InputError if this node must lead, but another node already leads.
-LatchedPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role);
+ClockPublisher take_part_in_clock(ros::NodeHandle& nh, ClockRole role, double rate);
 
 /// Followers publish the time of the clock that they need for their next step, and the leader waits
 /// for it. A time of zero requests the clock, which may be paused.
@@ -42,8 +43,7 @@ constexpr double longest_lead = 0.02;
 /// The leader's side: delays the flight for followers.
 class ClockLeader {
  public:
-  ClockLeader(ros::NodeHandle& nh, FlightThread& flight,
-              const LatchedPublisher<rosgraph_msgs::Clock>& clock);
+  ClockLeader(ros::NodeHandle& nh, FlightThread& flight, const ClockPublisher& clock);
   /// Stops waiting for silent followers, and removes those that have ended. Call it periodically.
   void poll();
   /// Returns the namespaces of the present followers.
@@ -58,7 +58,7 @@ class ClockLeader {
   void hold();
 
   FlightThread& flight_;
-  LatchedPublisher<rosgraph_msgs::Clock> clock_;
+  ClockPublisher clock_;
   mutable std::mutex mutex_;
   std::map<std::string, Follower> followers_;
   double slowest_ =

@@ -11,8 +11,9 @@ constexpr std::ptrdiff_t oldest_poses = 200;
 
 }  // namespace
 
-PathTopic::PathTopic(ros::NodeHandle& nh) : publisher_(nh.advertise<nav_msgs::Path>("path", 10)) {
-  path_.header.frame_id = world_frame;
+PathTopic::PathTopic(ros::NodeHandle& nh, const std::string& frame)
+    : publisher_(nh.advertise<nav_msgs::Path>("path", 10)) {
+  path_.header.frame_id = frame;
   path_.poses.reserve(longest_path);
 }
 

@@ -11,7 +11,7 @@ namespace quadcore::node {
 /// Publishes the path of the vehicle for rviz.
 class PathTopic {
  public:
-  explicit PathTopic(ros::NodeHandle& nh);
+  PathTopic(ros::NodeHandle& nh, const std::string& frame);
 
   /// Call after a step that ended at `stamp`; a jump begins a new path.
   void add(const VehicleState& state, const ros::Time& stamp, bool jumped);

@@ -14,9 +14,8 @@ namespace quadcore::node {
 /// Publishes the topics of plugins, each under its own name in the type of its kind.
 class TopicBroadcast {
  public:
-  /// \param frame_prefix  prefix of the tf frames of links
   /// \param but  a topic to skip
-  TopicBroadcast(ros::NodeHandle& nh, const Simulation& simulation, const std::string& frame_prefix,
+  TopicBroadcast(ros::NodeHandle& nh, const Simulation& simulation, const Frames& frames,
                  const std::string& but);
 
   /// Sends messages that are new since the last call; after a jump, all.

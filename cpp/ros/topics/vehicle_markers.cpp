@@ -84,20 +84,19 @@ void add_arrow(Marker& line, double radius, double sense) {
 
 }  // namespace
 
-VehicleMarkers::VehicleMarkers(ros::NodeHandle& nh, Simulation& simulation,
-                               const std::string& frame_prefix)
+VehicleMarkers::VehicleMarkers(ros::NodeHandle& nh, Simulation& simulation, const Frames& frames)
     : publisher_(nh.advertise<visualization_msgs::MarkerArray>("vehicle_markers", 1, true)) {
   const Model& model = simulation.model();
   const double radius = drawn_disc_radius(model);
   const VectorXd rates = find_hover_rates(simulation);
   const std::vector<Eigen::Isometry3d> poses = link_poses(model);
-  const std::string root = make_frame_name(frame_prefix, model.links.front().name);
+  const std::string root = frames.of_link(model.links.front().name);
   visualization_msgs::MarkerArray all;
   const auto add = [&all](const Marker& made) { all.markers.push_back(made); };
 
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
-    const std::string frame = make_frame_name(frame_prefix, link.name);
+    const std::string frame = frames.of_link(link.name);
     const InertiaBox box = inertia_box(link.inertial);
     Vector3d axis = Vector3d::UnitZ();
     if (i > 0) axis = poses[i].linear() * model.joints[i - 1].axis;

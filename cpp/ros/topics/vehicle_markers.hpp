@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "frames.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::node {
@@ -13,8 +14,7 @@ namespace quadcore::node {
 /// `boxes` and `masses`, of links and rotors, and `centre_of_mass`.
 class VehicleMarkers {
  public:
-  /// \param frame_prefix  prefix of the vehicle's frames, "" or for example "uav1/"
-  VehicleMarkers(ros::NodeHandle& nh, Simulation& simulation, const std::string& frame_prefix);
+  VehicleMarkers(ros::NodeHandle& nh, Simulation& simulation, const Frames& frames);
 
  private:
   ros::Publisher publisher_;

@@ -213,10 +213,27 @@ def write_log(
     with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Writer
     with _name_temporary(path) as part, atomic_write(path) as stream:
-        with Writer(part) as bag:  # to a name only
+        writer = Writer(part)  # to a name only
+        writer.set_compression(Writer.CompressionFormat.LZ4)
+        writer.compressor = _compress
+        with writer as bag:
             _write_rows(bag, Messages(), columns, table, wrenches, ignored)
         with part.open("rb") as written:
             shutil.copyfileobj(written, stream)
+
+
+def _compress(data: bytes) -> bytes:
+    """Compress a part of a bag with the options of rosbag, which reads no others."""
+    from lz4 import frame
+
+    packed: bytes = frame.compress(
+        data,
+        block_size=frame.BLOCKSIZE_MAX1MB,
+        block_linked=False,
+        content_checksum=True,
+        store_size=False,
+    )
+    return packed
 
 
 def write_ros2_log(
