@@ -17,7 +17,9 @@ is shown, and programs of systems that are not here are stood in for (`stand_in.
 from __future__ import annotations
 
 import ast
+import atexit
 import contextlib
+import functools
 import inspect
 import os
 import re
@@ -26,6 +28,7 @@ import signal
 import site
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -35,6 +38,7 @@ import quadcore as qc
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"
+FORKS = Path(__file__).with_name("forks.py")
 # These fly as long as they say.
 WHOLE = (ROOT, ROOT / "python", ROOT / "docs" / "tutorials")
 PAGES = sorted((ROOT / "docs").rglob("*.md"))
@@ -120,14 +124,32 @@ def run(page, folder):
         else:
             raise AssertionError(f"{page.name}: nothing runs a block of '{language}':\n{text}")
     try:
-        return call([sys.executable, "-c", "\n".join(steps)], folder, page.parent not in WHOLE)
+        return call("\n".join(steps), folder, page.parent not in WHOLE)
     finally:
         if (folder / "served").exists():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(int((folder / "served").read_text().split()[1]), signal.SIGTERM)
 
 
-def call(command, folder, short):
+@functools.lru_cache(maxsize=None)
+def start_server():
+    """Start the process whose forks run quadcore and Python, and return its address."""
+    folder = tempfile.TemporaryDirectory(prefix="forks")
+    address = f"{folder.name}/socket"
+    server = subprocess.Popen(
+        [sys.executable, str(FORKS), address], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    assert server.stdout.readline() == b"ready\n"
+    atexit.register(lambda: (server.stdin.close(), server.wait(), folder.cleanup()))
+    return address
+
+
+def list_client(program):
+    """List the words that run a program of `stand_in` in a fork."""
+    return [sys.executable, "-IS", str(FORKS), start_server(), program]
+
+
+def call(text, folder, short):
     environment = {
         **os.environ,
         "HOME": str(folder),
@@ -138,7 +160,7 @@ def call(command, folder, short):
         "QUADCORE_SHORT": "yes" if short else "",
     }
     ran = subprocess.run(
-        command, cwd=str(folder), env=environment, stdout=subprocess.PIPE,
+        [*list_client("python"), text], cwd=str(folder), env=environment, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, encoding="utf-8",
     )  # fmt: skip
     assert ran.returncode == 0, ran.stdout
@@ -175,6 +197,8 @@ def prepare(folder):
     places += [folder / "scripts" / f.name for f in (ROOT / "scripts").iterdir() if not f.suffix]
     for place in places:
         place.parent.mkdir(exist_ok=True)
-        words = " ".join(map(shlex.quote, (sys.executable, str(stand_in), place.name)))
+        is_forked = place.name == "quadcore"
+        command = list_client("quadcore") if is_forked else [sys.executable, stand_in, place.name]
+        words = " ".join(shlex.quote(str(word)) for word in command)
         place.write_text(f'#!/bin/sh\nexec {words} "$@"\n')
         place.chmod(0o755)

@@ -28,9 +28,12 @@ def quadcore(words):
     if getattr(given, "dask", None):  # there is no such cluster
         at = words.index("--dask")
         del words[at : at + 2]
-    command = [sys.executable, "-m", "quadcore", *words]
     if words[0] != "serve":
-        os.execv(sys.executable, command)
+        from quadcore.__main__ import run
+
+        sys.argv[1:] = words
+        run()
+    command = [sys.executable, "-m", "quadcore", *words]
     if "--port" in words:
         command[command.index("--port") + 1] = "0"  # which nobody else has
     quiet = subprocess.DEVNULL  # or who waits for the page would wait for it
@@ -38,6 +41,14 @@ def quadcore(words):
     address = served.stdout.readline()
     assert address.startswith("serving ")
     Path("served").write_text(f"{address.rpartition(':')[2].strip()} {served.pid}")
+
+
+def python(words):
+    """Run a text as `python -c` does."""
+    sys.argv[:] = ["-c"]
+    sys.path.insert(0, "")
+    main = sys.modules["__main__"] = type(sys)("__main__")
+    exec(compile(words[0], "<string>", "exec"), main.__dict__)
 
 
 def pip(words):
