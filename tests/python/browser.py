@@ -60,9 +60,13 @@ async function opened(url, width) {
 }
 window.onload = async () => {
   try {
-    for (const [name, url, width] of PAGES) {
-      const frame = await opened(url, width);
-      result[`${name} ${width}`] = await look(frame.contentWindow, frame.contentDocument, width);
+    for (const [name, url, widths] of PAGES) {
+      const frame = await opened(url, widths[0]);
+      for (const width of widths) {
+        frame.style.width = `${width}px`;
+        if (width != widths[0]) await new Promise((resolve) => setTimeout(resolve, 100));
+        result[`${name} ${width}`] = await look(frame.contentWindow, frame.contentDocument, width);
+      }
       frame.remove();
     }
   } catch (fault) {
@@ -131,8 +135,8 @@ async function look(view, inside) {
   }
   while (!view.quadcore) await new Promise((resolve) => setTimeout(resolve, 10));
   await view.quadcore.ready;
-  let frames = 0;  // of a screen that there is not: 50 in a second
-  view.requestAnimationFrame = (draw) => view.setTimeout(() => draw(20 * ++frames), 20);
+  let frames = 0;  // of a screen that there is not: 20 in a second
+  view.requestAnimationFrame = (draw) => view.setTimeout(() => draw(50 * ++frames), 50);
   const part = (name) => inside.querySelector(".quadcore-player " + name), canvas = part("canvas");
   const { scene } = view.quadcore.players[0];
   const time = () => Number(part(".time").value);
@@ -205,18 +209,24 @@ def find_violations(page, folder, *options):
     return found["found"]
 
 
-def look_at_pages(look, files, widths, folder, fonts="wide", options=()):
-    """Open files at some widths (px): what a script finds in each, by (file, width)."""
-    pages = [(str(file), file.as_uri(), width) for file in files for width in widths]
+def look_at_pages(look, files, widths, folder, fonts="wide", options=(), once=False):
+    """Open files at some widths (px): what a script finds in each, by (file, width).
+
+    Opened once, a file is resized from width to width.
+    """
+    openings = [widths] if once else [[width] for width in widths]
+    pages = [(str(file), file.as_uri(), opening) for file in files for opening in openings]
     script = f"const PAGES = {json.dumps(pages)};{IN_FRAMES}{look}"
     whole = f"<html><head>{CATCH}<script>{script}</script></head><body></body></html>"
     # As much time as the pages want; none passes while nothing happens.
     needed = "--allow-file-access-from-files", "--virtual-time-budget=1000000"
     found = open_page(whole, folder, *needed, *options, fonts=fonts)
-    return {(name, width): found[f"{name} {width}"] for name, _, width in pages}
+    return {
+        (name, width): found[f"{name} {width}"] for name, _, opening in pages for width in opening
+    }
 
 
-def what_sticks_out(files, widths, folder):
+def what_sticks_out(files, widths, folder, once=False):
     """What reaches beyond an edge of a page, by (file, width, fonts).
 
     Where there is room, no table and no formula may have to be scrolled either, and nowhere a
@@ -225,7 +235,7 @@ def what_sticks_out(files, widths, folder):
     return {
         (*page, fonts): out
         for fonts in FONTS
-        for page, out in look_at_pages(STICK_OUT, files, widths, folder, fonts).items()
+        for page, out in look_at_pages(STICK_OUT, files, widths, folder, fonts, once=once).items()
     }
 
 

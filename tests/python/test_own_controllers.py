@@ -13,6 +13,7 @@ from test_guided_runs import OWN
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.control import references
+from quadcore.studies.evaluate import margins
 
 OWN_MORE = """
 class Never(Hover):
@@ -122,8 +123,11 @@ def test_the_time_limit_holds_for_the_mathematical_model_too():
 
 
 @pytest.mark.parametrize("options", [{"seeds": 3}, {"margins": True}])
-def test_what_a_module_remembers_of_a_flight_no_other_flight_knows(options):
+def test_what_a_module_remembers_of_a_flight_no_other_flight_knows(options, monkeypatch):
     """Whatever the number of processes: each flight is the first of its module."""
+    monkeypatch.setattr(margins, "LARGEST_DELAY", 0.004)  # fewer flights of each kind
+    monkeypatch.setattr(margins, "_GAINS", 6)
+    monkeypatch.setattr(margins, "_SAMPLES", 2)
     several = [
         evaluate("own:remembers", "hover", duration=0.05, processes=n, **options) for n in (1, 2)
     ]
