@@ -134,8 +134,9 @@ most_levels, most_attributes : int
                              "Names of the elements that the user ignored.")
       .def_property_readonly("warning", &IgnoredElements::warning,
                              "Warning about elements without effect on the motion, or \"\".")
-      .def_property_readonly("unsimulated", &IgnoredElements::unsimulated,
-                             "What may affect the motion but is not simulated, list of str.");
+      .def_property_readonly(
+          "unsimulated", &IgnoredElements::unsimulated,
+          "Parts of the world that may affect the motion but are not simulated, list of str.");
 
   py::class_<HarmlessElement>(m, "HarmlessElement",
                               "Element or module without effect on the motion.")

@@ -228,8 +228,8 @@ def add_model_option(parser: argparse.ArgumentParser) -> None:
 
 
 _CONTROLLERS = (
-    f"{', '.join(controllers.NAMES)}, each with optional parameters, NAME:KEY=VALUE,...; a gains "
-    "file; or your own class or plugin, FILE.py[:NAME], MODULE:NAME or FILE.so"
+    f"{', '.join(controllers.NAMES)}, each with optional parameters, NAME:KEY=VALUE,...; or a "
+    "gains file. Your own class or plugin is FILE.py[:NAME], MODULE:NAME or FILE.so"
 )
 
 

@@ -61,5 +61,5 @@ def restrict(controller: Any) -> Any:
 
 
 def find_sensors(controller: Any, simulation: Any) -> Any:
-    """Return the object whose topics a controller may read: a `Vehicle` shows only sensors."""
+    """Return the object with the topics for a controller: a `Vehicle` shows only sensors."""
     return Vehicle(simulation) if getattr(controller, "reads_sensors_only", False) else simulation

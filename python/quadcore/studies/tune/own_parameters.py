@@ -23,7 +23,7 @@ def read_own(text: str, plan: FlightPlan, limit: float) -> Gains:
     text
         Controller, as for `controllers.parse`.
     plan
-        Plan of a flight, to whose vehicle a plugin is added.
+        Plan of a flight. A plugin is added to its vehicle.
     limit
         Wall-clock limit, s.
 
