@@ -1,8 +1,8 @@
 """Time `quadcore evaluate`: 320 flights of 30 s in engine eigen, with intervals, pictures and page.
 
-Four laws, four references, 20 seeds of the thesis' noise, two processes. Beside wall seconds stands
-what they would be if nothing else ran, from processor times. Then what a flight of a law in numpy
-at 500 Hz takes: the cascade of thesis (2.43)-(2.51).
+Four controllers, four references, 20 seeds of the thesis' noise, two processes. The second line
+is the wall time if nothing else ran, from processor times. The last line is the time of a flight of
+a controller in numpy at 500 Hz, the cascade of thesis (2.43)-(2.51).
 """
 
 import os
@@ -82,5 +82,5 @@ count, wall, undisturbed = seconds_of_evaluation()
 print(f"{count} flights of 30 s, two processes  {wall:6.2f} s, at most {LONGEST:g}")
 print(f"the same undisturbed                {undisturbed:6.2f} s")
 print(
-    f"a flight of a law in numpy          {seconds_in_numpy():6.2f} s, at most {LONGEST_IN_NUMPY:g}"
+    f"a flight of a controller in numpy   {seconds_in_numpy():6.2f} s, at most {LONGEST_IN_NUMPY:g}"
 )

@@ -9,12 +9,14 @@ from noise import THESIS
 import quadcore as qc
 from quadcore.studies.evaluate.plots import draw
 
-LAWS = ["pd", "pd_compensated", "pid", "geometric", "indi", "lqr"]
+CONTROLLERS = ["pd", "pd_compensated", "pid", "geometric", "indi", "lqr"]
 
 
 def main() -> None:
-    """Fly 20 seeds of each law and draw them."""
-    found = qc.evaluate(LAWS, "circle", seeds=20, parameters=THESIS, xacro_args={"sim_slow": 1})
+    """Simulate and plot 20 seeds of each controller."""
+    found = qc.evaluate(
+        CONTROLLERS, "circle", seeds=20, parameters=THESIS, xacro_args={"sim_slow": 1}
+    )
     pictures = draw(found)
     for name, of in (("evaluate_errors", "errors_1"), ("evaluate_seeds", "seeds")):
         save(name, pictures[of])

@@ -32,7 +32,7 @@ class Case:
     name: str
     engine: str
     sim_slow: int
-    law: Callable[[], BuiltInController]
+    make: Callable[[], BuiltInController]
     reference: Callable[[], references.Shape]
     limit: float  # mm; negative: the flight is expected to fail
     duration: float = 30.0
@@ -92,7 +92,7 @@ def fly(flight: Tuple[Case, int]) -> float:
             log = simulation.run(
                 case.duration,
                 log_every=5,
-                controller=case.law(),
+                controller=case.make(),
                 reference=reference,
             )
         except qc.FlightError as error:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "actuation_law.hpp"
+#include "actuation_formulas.hpp"
 #include "lanes/for_each_width.hpp"
 #include "measure_block.hpp"
 #include "numbers.hpp"
@@ -50,7 +50,7 @@ LaneControls::LaneControls(const Follower& like,
       width_(lane_width(widest_lanes)),
       schedule_(rate_, delay_, rotors_ * widest_lanes),
       pending_(schedule_.state_size()),
-      law_(width_, like_->law.numbers.size()),
+      numbers_(width_, like_->wrench_controller.numbers.size()),
       actuators_(width_, like_->actuators.size()),
       sensors_(width_, size_of<ErrorNumbers>),
       measured_(width_, size_of<control::MeasuredNumbers>),
@@ -69,7 +69,7 @@ void LaneControls::add(Follower& follower, const control::LaneController& contro
                        control::ReferencePreview& preview) {
   const std::size_t lane = follower.lane();
   members_.push_back({&follower, lane, &preview, true});
-  law_.put(lane, controller.law.numbers.data());
+  numbers_.put(lane, controller.wrench_controller.numbers.data());
   actuators_.put(lane, controller.actuators.data());
   state_.put(lane, controller.state.data());
   ErrorNumbers<double> errors{};
@@ -129,7 +129,7 @@ void LaneControls::read_references(double step, double dt) {
     const BatchGuide& guide = *member.follower->guide;
     const control::ReferencePreview::Point& point =
         member.preview->at(step * dt, *guide.reference, list_times);
-    const bool feeds = guide.controller->feeds() != control::ControlLaw::Feeds::nothing;
+    const bool feeds = guide.controller->feeds() != control::WrenchController::Feeds::nothing;
     member.is_defined = point.flat || !feeds;
     if (member.preview == of_all) continue;
     const auto wanted = control::numbers_of(point.wanted, point.flat ? &*point.flat : nullptr);
@@ -148,10 +148,10 @@ void LaneControls::call(double period) {
       &control::command_block<1>, &control::command_block<2>, &control::command_block<4>,
       &control::command_block<8>};
   std::int64_t complete[widest_lanes];
-  calls[width_]({like_->law.kind, like_->law.switches, rotors_, like_->law.numbers.size(),
-                 like_->state.size(), period, !has_begun_, law_.data(), actuators_.data(),
-                 measured_.data(), wanted_.data(), state_.data(), demand_.data(), speeds_.data(),
-                 complete});
+  calls[width_]({like_->wrench_controller.kind, like_->wrench_controller.switches, rotors_,
+                 like_->wrench_controller.numbers.size(), like_->state.size(), period, !has_begun_,
+                 numbers_.data(), actuators_.data(), measured_.data(), wanted_.data(),
+                 state_.data(), demand_.data(), speeds_.data(), complete});
   has_begun_ = true;
   for (const Member& member : members_) {
     if (complete[member.lane] != 0 || member.follower->has_left) continue;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "follower.hpp"
-#include "lane_law.hpp"
+#include "lane_controller.hpp"
 #include "quadcore/control/reference_preview.hpp"
 #include "quadcore/control/schedule.hpp"
 
@@ -91,7 +91,7 @@ class LaneControls {
   std::vector<Member> members_;
   control::Schedule schedule_;
   std::vector<double> pending_;
-  PackTable law_, actuators_, sensors_, measured_, wanted_, state_, demand_, speeds_;
+  PackTable numbers_, actuators_, sensors_, measured_, wanted_, state_, demand_, speeds_;
   std::uint64_t seeds_[widest_lanes] = {}, counts_[widest_lanes] = {};
   bool has_begun_ = false;
 };

@@ -100,14 +100,15 @@ bool are_same(const RotorConventions& one, const RotorConventions& other) {
 }  // namespace
 
 std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
-  const ForceLaws& told = simulation.force_laws();
+  const ForceLaws& force_laws = simulation.force_laws();
   const Model& model = simulation.model();
   const std::size_t rotors = model.joints.size();
   const bool like_gazebo = simulation.engine_name() == "gazebo11";
-  if (!(like_gazebo || simulation.engine_name() == "eigen") || !told.all_quiet ||
+  if (!(like_gazebo || simulation.engine_name() == "eigen") || !force_laws.all_quiet ||
       !simulation.world().obstacles.empty() || !simulation.world().free_bodies.empty() ||
-      rotors > most_rotors || told.rotor_forces.size() > 1 || told.frame_drags.size() > 1 ||
-      told.airframes.size() > 1 || told.motor_torques.size() != 1) {
+      rotors > most_rotors || force_laws.rotor_forces.size() > 1 ||
+      force_laws.frame_drags.size() > 1 || force_laws.airframes.size() > 1 ||
+      force_laws.motor_torques.size() != 1) {
     return std::nullopt;
   }
   LaneVehicle vehicle{{}, unbounded, false, -unbounded, {}, {}, {}};
@@ -117,23 +118,23 @@ std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
   } else if (!put_hinged(model, simulation.world(), vehicle)) {
     return std::nullopt;
   }
-  for (const Quiet& quiet : told.quiet) {
+  for (const Quiet& quiet : force_laws.quiet) {
     vehicle.fastest = std::min(vehicle.fastest, quiet.fastest);
     vehicle.no_tilt |= quiet.no_tilt;
   }
   using Row = ConstantRow;
   Rows rows(vehicle.constants);
-  for (const FrameDrag& law : told.frame_drags) {
+  for (const FrameDrag& law : force_laws.frame_drags) {
     vehicle.laws.drag = true;
     rows.put(Row::frame_drag, law.coefficient);
   }
-  for (const AirframeLaws& law : told.airframes) {
+  for (const AirframeLaws& law : force_laws.airframes) {
     vehicle.laws.airframe = true;
     for (std::size_t row = 0; row < AirframeRow::count; ++row) {
       rows.put(Row::airframe + row, law.coefficients[row]);
     }
   }
-  for (const RotorForces& law : told.rotor_forces) {
+  for (const RotorForces& law : force_laws.rotor_forces) {
     vehicle.laws.conventions = law.conventions;
     vehicle.laws.acting = law.acting;
     rows.put(Row::sim_slow, law.sim_slow);
@@ -144,7 +145,7 @@ std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
       }
     }
   }
-  const MotorTorques& motors = told.motor_torques.front();
+  const MotorTorques& motors = force_laws.motor_torques.front();
   rows.put(Row::kp, motors.kp);
   rows.put(Row::fastest, motors.fastest);
   rows.put(Row::motors_sim_slow, motors.sim_slow);

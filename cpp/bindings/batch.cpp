@@ -95,13 +95,13 @@ void step(GuardedBatch& self, const py::object& commands, std::int64_t steps) {
     check_shape(rows, rows_of_each(self, self.batch.command_width()), "commands");
   }
   const BatchLock lock(self);
-  const double* told = commands.is_none() ? nullptr : rows.data();
+  const double* row = commands.is_none() ? nullptr : rows.data();
   const std::int64_t piece = std::max(
       steps_between_signals, between_signals / static_cast<std::int64_t>(self.batch.size()));
   do {
     const std::int64_t now = std::min(steps, piece);
-    without_gil([&] { self.batch.step(told, now); });
-    told = nullptr;
+    without_gil([&] { self.batch.step(row, now); });
+    row = nullptr;
     steps -= now;
     if (steps > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
   } while (steps > 0);

@@ -73,12 +73,12 @@ messages::Odometry odometry(const py::object& state) {
   return now;
 }
 
-std::unique_ptr<BoundController> create_controller(const std::string& law, const Self& believed,
+std::unique_ptr<BoundController> create_controller(const std::string& name, const Self& believed,
                                                    const Self& flown, const Values& values,
                                                    const std::vector<double>& spins) {
-  refuse_velocity_in_body("controller '" + law + "'", flown);
+  refuse_velocity_in_body("controller '" + name + "'", flown);
   const VehicleDescription description = describe(flown);
-  Controller made(law, describe_model(believed, flown, description), values, spins);
+  Controller made(name, describe_model(believed, flown, description), values, spins);
   return std::make_unique<BoundController>(BoundController{
       flown, control::GuidedController(*flown.operator->(), std::move(made), description)});
 }
@@ -153,7 +153,7 @@ void bind_control(py::module_& m) {
           "Valid values as readable text.");
 
   py::class_<BoundController>(m, "Controller", "Built-in controller of one vehicle.")
-      .def(py::init(&create_controller), py::arg("law"), py::arg("believed"), py::arg("flown"),
+      .def(py::init(&create_controller), py::arg("name"), py::arg("believed"), py::arg("flown"),
            py::arg("values"), py::arg("spins"))
       .def("command", &command, py::arg("period"), py::arg("state"), py::arg("reference"),
            "Return the rotor speeds to command for a period [s], signed, rad/s; shape (n,). The "
@@ -247,8 +247,8 @@ void bind_control(py::module_& m) {
       "controllers",
       [] {
         py::list all;
-        for (const control::ControllerInfo& law : control::list_controllers()) {
-          all.append(py::make_tuple(law.name, law.summary, Controller::table(law.name)));
+        for (const control::ControllerInfo& info : control::list_controllers()) {
+          all.append(py::make_tuple(info.name, info.summary, Controller::table(info.name)));
         }
         return all;
       },

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "actuation_law.hpp"
+#include "actuation_formulas.hpp"
 #include "numbers.hpp"
 #include "quadcore/plugin/elementary.hpp"
 

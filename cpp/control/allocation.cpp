@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "actuation_law.hpp"
+#include "actuation_formulas.hpp"
 #include "numbers.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"

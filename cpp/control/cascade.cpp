@@ -65,7 +65,7 @@ Cascade::Cascade(const ModelledVehicle& model, const Gains& gains) : model_(mode
   inner_d_ = g.scale * Vector3d(g.kd_rp, g.kd_rp, g.kd_yaw);
 }
 
-Demand Cascade::demand(const LawInput& input, double* memory) const {
+Demand Cascade::demand(const ControllerInput& input, double* memory) const {
   const Odometry& now = input.now;
   const Matrix3d R_WF = now.orientation.toRotationMatrix();
   const Vector3d rpy = rpy_from_quaternion(now.orientation);
@@ -95,7 +95,7 @@ Demand Cascade::demand(const LawInput& input, double* memory) const {
 }
 
 /// Return the acceleration of (2.43), with an integral as in section 6.2.
-Vector3d Cascade::acceleration(const LawInput& input, double* memory) const {
+Vector3d Cascade::acceleration(const ControllerInput& input, double* memory) const {
   const Reference& wanted = input.wanted;
   const Vector3d error = wanted.position - input.now.position;
   auto integral = vector(memory + kPosition);
@@ -109,7 +109,7 @@ Vector3d Cascade::acceleration(const LawInput& input, double* memory) const {
 /// Return the torque of (2.49), (2.50) or (2.57). J(eta) y + C(eta, eta') eta' are generalised
 /// torques, W^T times those about the body axes. With J = W^T I W, the latter are I (W y + W' eta')
 /// + w x I w.
-Vector3d Cascade::torque(const LawInput& input, const std::optional<FlatState>& flat,
+Vector3d Cascade::torque(const ControllerInput& input, const std::optional<FlatState>& flat,
                          const Vector3d& rpy, const Vector3d& wanted_rpy, double* memory) const {
   const Vector3d& w_WF_F = input.now.angular_velocity;
   const Vector3d rates = rates_of(rpy, w_WF_F);

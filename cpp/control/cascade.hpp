@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "quadcore/control/control_law.hpp"
 #include "quadcore/control/flat_state.hpp"
+#include "quadcore/control/wrench_controller.hpp"
 
 namespace quadcore::control {
 
@@ -11,7 +11,7 @@ namespace quadcore::control {
 /// commands roll, pitch and thrust; an inner loop on roll, pitch and yaw commands the torques.
 /// Without compensation these are eqs. (2.43)-(2.51), with it (2.52)-(2.57), and with integrals the
 /// PID of section 6.2.
-class Cascade final : public ControlLaw {
+class Cascade final : public WrenchController {
  public:
   struct Gains {
     double scale;
@@ -28,15 +28,15 @@ class Cascade final : public ControlLaw {
     if (!gains_.flat_rates) return Feeds::nothing;
     return gains_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
   }
-  Demand demand(const LawInput& input, double* memory) const override;
+  Demand demand(const ControllerInput& input, double* memory) const override;
 
  private:
   /// Integrals of the position and angle errors.
   enum : std::size_t { kPosition, kAngles = 3 };
 
-  Vector3d acceleration(const LawInput& input, double* memory) const;
-  Vector3d torque(const LawInput& input, const std::optional<FlatState>& flat, const Vector3d& rpy,
-                  const Vector3d& wanted_rpy, double* memory) const;
+  Vector3d acceleration(const ControllerInput& input, double* memory) const;
+  Vector3d torque(const ControllerInput& input, const std::optional<FlatState>& flat,
+                  const Vector3d& rpy, const Vector3d& wanted_rpy, double* memory) const;
 
   ModelledVehicle model_;
   Gains gains_;

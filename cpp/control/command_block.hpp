@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "law_numbers.hpp"
+#include "controller_numbers.hpp"
 
 /// \file
 /// Controllers of several vehicles at once. Contains neither Eigen nor code, so that files compiled
@@ -11,8 +11,8 @@
 
 namespace quadcore::control {
 
-/// Control laws for the lanes.
-enum class LawKind { geometric, indi, lqr };
+/// Controllers for the lanes.
+enum class ControllerKind { geometric, indi, lqr };
 
 /// Number of values of a struct of numbers.
 template <template <class> class Numbers>
@@ -21,12 +21,12 @@ constexpr std::size_t size_of = sizeof(Numbers<double>) / sizeof(double);
 /// Controllers of up to widest_lanes vehicles. A table contains a struct of packs of W vehicles,
 /// then that of the next W vehicles.
 struct CommandBlock {
-  LawKind kind;
-  LawSwitches switches;
-  std::size_t rotors, law_rows, state_rows;
+  ControllerKind kind;
+  ControllerSwitches switches;
+  std::size_t rotors, number_rows, state_rows;
   double period;
   bool begins;
-  const double* law;        ///< TrackingNumbers, IndiNumbers or LqrNumbers
+  const double* numbers;    ///< TrackingNumbers, IndiNumbers or LqrNumbers
   const double* actuators;  ///< RotorNumbers of each rotor
   const double* measured;   ///< MeasuredNumbers
   const double* wanted;     ///< WantedNumbers

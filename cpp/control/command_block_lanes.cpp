@@ -1,9 +1,9 @@
-#include "actuation_law.hpp"
+#include "actuation_formulas.hpp"
 #include "command_block.hpp"
 #include "lanes/mask.hpp"
-#include "lqr_law.hpp"
+#include "lqr_formulas.hpp"
 #include "quadcore/plugin/rotor_layout.hpp"
-#include "tracking_law.hpp"
+#include "tracking_formulas.hpp"
 
 namespace quadcore::control {
 namespace {
@@ -19,22 +19,22 @@ QUADCORE_LAW const S& part_of(const double* table, std::size_t rows, std::size_t
 }
 
 template <class T>
-QUADCORE_LAW DemandNumbers<T> demand_by_law(const CommandBlock& block, std::size_t part,
-                                            const LawNumbers<T>& input, T* memory) {
-  const double* const law = block.law;
+QUADCORE_LAW DemandNumbers<T> demand_by_kind(const CommandBlock& block, std::size_t part,
+                                             const InputNumbers<T>& input, T* memory) {
+  const double* const table = block.numbers;
   switch (block.kind) {
-    case LawKind::geometric: {
-      const auto& numbers = part_of<TrackingNumbers<T>, T>(law, block.law_rows, part);
-      return demand_geometrically(TrackingLaw<T>{block.switches, numbers, input},
+    case ControllerKind::geometric: {
+      const auto& numbers = part_of<TrackingNumbers<T>, T>(table, block.number_rows, part);
+      return demand_geometrically(TrackingFormulas<T>{block.switches, numbers, input},
                                   *reinterpret_cast<GeometricMemory<T>*>(memory));
     }
-    case LawKind::indi: {
-      const auto& numbers = part_of<IndiNumbers<T>, T>(law, block.law_rows, part);
-      return demand_incrementally(TrackingLaw<T>{block.switches, numbers.tracking, input},
+    case ControllerKind::indi: {
+      const auto& numbers = part_of<IndiNumbers<T>, T>(table, block.number_rows, part);
+      return demand_incrementally(TrackingFormulas<T>{block.switches, numbers.tracking, input},
                                   numbers.share, *reinterpret_cast<IndiMemory<T>*>(memory));
     }
     default: {
-      const auto& numbers = part_of<LqrNumbers<T>, T>(law, block.law_rows, part);
+      const auto& numbers = part_of<LqrNumbers<T>, T>(table, block.number_rows, part);
       return demand_optimally(block.switches, numbers, input,
                               *reinterpret_cast<LqrMemory<T>*>(memory));
     }
@@ -51,11 +51,11 @@ QUADCORE_LAW void command(const CommandBlock& block, std::size_t part) {
   T* const state = &part_of<T, T>(block.state, block.state_rows, part);
   RotorsNumbers<T> modelled{{none, {none, none, none}}, {none, none, none}, state[Row::saturated]};
   for (std::size_t i = 0; i < n; ++i) add_rotor(rotors[i], state[Row::speeds + i], one, modelled);
-  const LawNumbers<T> input{
+  const InputNumbers<T> input{
       block.period, block.begins,
       part_of<MeasuredNumbers<T>, T>(block.measured, size_of<MeasuredNumbers>, part),
       part_of<WantedNumbers<T>, T>(block.wanted, size_of<WantedNumbers>, part), modelled};
-  const DemandNumbers<T> demand = demand_by_law(block, part, input, state + Row::count(n));
+  const DemandNumbers<T> demand = demand_by_kind(block, part, input, state + Row::count(n));
   part_of<DemandNumbers<T>, T>(block.demand, size_of<DemandNumbers>, part) = demand;
 
   T* const speeds = &part_of<T, T>(block.speeds, n, part);

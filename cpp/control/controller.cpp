@@ -1,11 +1,11 @@
 #include "quadcore/control/controller.hpp"
 
-#include "lane_law.hpp"
+#include "lane_controller.hpp"
 
 namespace quadcore::control {
 
-std::vector<TagSpec> Controller::table(const std::string& law) {
-  const ControllerInfo& info = find_controller(law);
+std::vector<TagSpec> Controller::table(const std::string& name) {
+  const ControllerInfo& info = find_controller(name);
   std::vector<TagSpec> table = info.table;
   for (const std::vector<TagSpec>& more : {Actuation::table(), ModelledVehicle::table()}) {
     table.insert(table.end(), more.begin(), more.end());
@@ -13,21 +13,21 @@ std::vector<TagSpec> Controller::table(const std::string& law) {
   return with_defaults(std::move(table), info.defaults);
 }
 
-Values Controller::complete_values(const std::string& law, const Values& values) {
-  check_values("controller '" + law + "'", table(law), values);
-  return complete(values, find_controller(law).defaults);
+Values Controller::complete_values(const std::string& name, const Values& values) {
+  check_values("controller '" + name + "'", table(name), values);
+  return complete(values, find_controller(name).defaults);
 }
 
-Controller::Controller(const std::string& law, const VehicleDescription& vehicle,
+Controller::Controller(const std::string& name, const VehicleDescription& vehicle,
                        const Values& given, const std::vector<double>& spins)
-    : Controller(find_controller(law), vehicle, complete_values(law, given), spins) {}
+    : Controller(find_controller(name), vehicle, complete_values(name, given), spins) {}
 
-Controller::Controller(const ControllerInfo& law, const VehicleDescription& vehicle,
+Controller::Controller(const ControllerInfo& info, const VehicleDescription& vehicle,
                        const Values& values, const std::vector<double>& spins)
     : model_(ModelledVehicle::of(vehicle, spins, values)),
       actuation_(model_, values),
-      law_(law.make(model_, values)),
-      memory_size_(law.memory_size) {}
+      wrench_controller_(info.make(model_, values)),
+      memory_size_(info.memory_size) {}
 
 void Controller::command(double period, const Odometry& now, const Reference& wanted, double* state,
                          double* speeds, const FlatState* flat) const {
@@ -43,16 +43,18 @@ void Controller::command(double period, const Odometry& now, const Reference& wa
 void Controller::follow(double period, const Odometry& now, const Reference& wanted,
                         const FlatState* flat, double* state, double* speeds) const {
   const Actuation::Now rotors_now = actuation_.now(state);
-  const LawInput input{period,         rotors_now.begins,   now, wanted, flat, rotors_now.exerted,
-                       rotors_now.h_F, rotors_now.saturated};
-  const Demand demand = law_->demand(input, state + Actuation::state_size(rotors()));
+  const ControllerInput input{
+      period,         rotors_now.begins,   now, wanted, flat, rotors_now.exerted,
+      rotors_now.h_F, rotors_now.saturated};
+  const Demand demand = wrench_controller_->demand(input, state + Actuation::state_size(rotors()));
   actuation_.command(period, demand, state, speeds);
 }
 
 std::shared_ptr<const LaneController> Controller::in_lanes(double period) const {
-  const std::shared_ptr<const LaneLaw> law = law_->in_lanes(period);
-  if (!law) return nullptr;
-  LaneController made{*law, rotors(), actuation_.list_numbers(), std::vector<double>(state_size())};
+  const std::shared_ptr<const LaneWrenchController> in_lanes = wrench_controller_->in_lanes(period);
+  if (!in_lanes) return nullptr;
+  LaneController made{*in_lanes, rotors(), actuation_.list_numbers(),
+                      std::vector<double>(state_size())};
   actuation_.find_shares(period, made.state.data());
   return std::make_shared<LaneController>(std::move(made));
 }

@@ -23,8 +23,8 @@ std::vector<std::string> names_of(const Tables& tables) {
 const Tables& controller_tables() {
   static const Tables tables = [] {
     Tables all;
-    for (const ControllerInfo& law : list_controllers())
-      all.emplace_back(law.name, Controller::table(law.name));
+    for (const ControllerInfo& info : list_controllers())
+      all.emplace_back(info.name, Controller::table(info.name));
     return all;
   }();
   return tables;

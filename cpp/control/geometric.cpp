@@ -7,15 +7,15 @@ const Settings<Geometric::Gains>& Geometric::settings() {
   return all;
 }
 
-Demand Geometric::demand(const LawInput& input, double* memory) const {
-  return tracking_.demand(input, [&](const TrackingLaw<double>& law) {
-    return demand_geometrically(law, memory_of<GeometricMemory>(memory));
+Demand Geometric::demand(const ControllerInput& input, double* memory) const {
+  return tracking_.demand(input, [&](const TrackingFormulas<double>& formulas) {
+    return demand_geometrically(formulas, memory_of<GeometricMemory>(memory));
   });
 }
 
-std::shared_ptr<const LaneLaw> Geometric::in_lanes(double /*period*/) const {
-  return std::make_shared<LaneLaw>(
-      LaneLaw{LawKind::geometric, tracking_.switches(), list_numbers(tracking_.numbers())});
+std::shared_ptr<const LaneWrenchController> Geometric::in_lanes(double /*period*/) const {
+  return std::make_shared<LaneWrenchController>(LaneWrenchController{
+      ControllerKind::geometric, tracking_.switches(), list_numbers(tracking_.numbers())});
 }
 
 }  // namespace quadcore::control

@@ -6,7 +6,7 @@ namespace quadcore::control {
 
 /// Tracking control on SE(3) (Lee, Leok, McClamroch, CDC 2010) with a quaternion attitude error and
 /// feed-forward of the reference.
-class Geometric final : public ControlLaw {
+class Geometric final : public WrenchController {
  public:
   using Gains = TrackingGains;
   static const Settings<Gains>& settings();
@@ -15,8 +15,8 @@ class Geometric final : public ControlLaw {
 
   static constexpr std::size_t memory_size = size_of<GeometricMemory>;
   Feeds feeds() const override { return tracking_.feeds(); }
-  Demand demand(const LawInput& input, double* memory) const override;
-  std::shared_ptr<const LaneLaw> in_lanes(double period) const override;
+  Demand demand(const ControllerInput& input, double* memory) const override;
+  std::shared_ptr<const LaneWrenchController> in_lanes(double period) const override;
 
  private:
   Tracking tracking_;

@@ -32,19 +32,19 @@ const Settings<Indi::Gains>& Indi::settings() {
   return all;
 }
 
-Demand Indi::demand(const LawInput& input, double* memory) const {
+Demand Indi::demand(const ControllerInput& input, double* memory) const {
   const double share = filter_share(input.period);
-  return tracking_.demand(input, [&](const TrackingLaw<double>& law) {
-    return demand_incrementally(law, share, memory_of<IndiMemory>(memory));
+  return tracking_.demand(input, [&](const TrackingFormulas<double>& formulas) {
+    return demand_incrementally(formulas, share, memory_of<IndiMemory>(memory));
   });
 }
 
 double Indi::filter_share(double period) const { return 1 - elementary::exp(-filter_ * period); }
 
-std::shared_ptr<const LaneLaw> Indi::in_lanes(double period) const {
+std::shared_ptr<const LaneWrenchController> Indi::in_lanes(double period) const {
   const IndiNumbers<double> numbers{tracking_.numbers(), filter_share(period)};
-  return std::make_shared<LaneLaw>(
-      LaneLaw{LawKind::indi, tracking_.switches(), list_numbers(numbers)});
+  return std::make_shared<LaneWrenchController>(
+      LaneWrenchController{ControllerKind::indi, tracking_.switches(), list_numbers(numbers)});
 }
 
 }  // namespace quadcore::control

@@ -8,7 +8,7 @@ namespace quadcore::control {
 /// TCST 2021). Instead of computing the demand from the model, it adds the difference between
 /// wanted and measured accelerations to the present wrench of the rotors. Yaw uses the model,
 /// because the rotors' acceleration acts on it first.
-class Indi final : public ControlLaw {
+class Indi final : public WrenchController {
  public:
   struct Gains : TrackingGains {
     double filter;
@@ -20,8 +20,8 @@ class Indi final : public ControlLaw {
       : tracking_(model, gains), filter_(gains.filter) {}
 
   Feeds feeds() const override { return tracking_.feeds(); }
-  Demand demand(const LawInput& input, double* memory) const override;
-  std::shared_ptr<const LaneLaw> in_lanes(double period) const override;
+  Demand demand(const ControllerInput& input, double* memory) const override;
+  std::shared_ptr<const LaneWrenchController> in_lanes(double period) const override;
 
  private:
   /// Return the fraction of a change that the filters pass within a period.

@@ -83,11 +83,11 @@ Lqr::Lqr(const ModelledVehicle& model, const Gains& g)
   numbers_.vehicle = numbers_of(model);
 }
 
-ControlLaw::Feeds Lqr::feeds() const {
+WrenchController::Feeds Lqr::feeds() const {
   return switches_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
 }
 
-Demand Lqr::demand(const LawInput& input, double* memory) const {
+Demand Lqr::demand(const ControllerInput& input, double* memory) const {
   if (switches_.feed_forward) return follow(input, memory);
   Reference unmoved = input.wanted;
   unmoved.acceleration.setZero();
@@ -97,20 +97,21 @@ Demand Lqr::demand(const LawInput& input, double* memory) const {
   FlatState flat = input.flat ? *input.flat : flat_state(input.wanted, model_, switches_.drag);
   flat.R_WF = level.R_WF;
   flat.thrust = level.thrust;
-  LawInput levelled = input;
+  ControllerInput levelled = input;
   levelled.flat = &flat;
   return follow(levelled, memory);
 }
 
-Demand Lqr::follow(const LawInput& input, double* memory) const {
-  return call_with_numbers(input, feeds(), model_, [&](const LawNumbers<double>& numbers) {
+Demand Lqr::follow(const ControllerInput& input, double* memory) const {
+  return call_with_numbers(input, feeds(), model_, [&](const InputNumbers<double>& numbers) {
     return demand_optimally(switches_, numbers_, numbers, memory_of<LqrMemory>(memory));
   });
 }
 
-std::shared_ptr<const LaneLaw> Lqr::in_lanes(double /*period*/) const {
+std::shared_ptr<const LaneWrenchController> Lqr::in_lanes(double /*period*/) const {
   if (!switches_.feed_forward) return nullptr;
-  return std::make_shared<LaneLaw>(LaneLaw{LawKind::lqr, switches_, list_numbers(numbers_)});
+  return std::make_shared<LaneWrenchController>(
+      LaneWrenchController{ControllerKind::lqr, switches_, list_numbers(numbers_)});
 }
 
 }  // namespace quadcore::control

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lqr_law.hpp"
+#include "lqr_formulas.hpp"
 #include "numbers.hpp"
 
 namespace quadcore::control {
@@ -9,7 +9,7 @@ namespace quadcore::control {
 /// feed-forward of the reference (Bouabdallah, Noth, Siegwart, IROS 2004). The hovering vehicle
 /// separates into four chains: integral, position, velocity, tilt and rate along x and along y;
 /// integral, position and velocity along z; yaw and its rate.
-class Lqr final : public ControlLaw {
+class Lqr final : public WrenchController {
  public:
   struct Gains {
     double q_integral, q_position, q_velocity, q_tilt, q_rate, r_tilt;
@@ -24,14 +24,14 @@ class Lqr final : public ControlLaw {
 
   static constexpr std::size_t memory_size = size_of<LqrMemory>;
   Feeds feeds() const override;
-  Demand demand(const LawInput& input, double* memory) const override;
-  std::shared_ptr<const LaneLaw> in_lanes(double period) const override;
+  Demand demand(const ControllerInput& input, double* memory) const override;
+  std::shared_ptr<const LaneWrenchController> in_lanes(double period) const override;
 
  private:
-  Demand follow(const LawInput& input, double* memory) const;
+  Demand follow(const ControllerInput& input, double* memory) const;
 
   ModelledVehicle model_;
-  LawSwitches switches_;
+  ControllerSwitches switches_;
   LqrNumbers<double> numbers_;
 };
 

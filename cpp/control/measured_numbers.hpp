@@ -4,7 +4,7 @@
 
 namespace quadcore::control {
 
-/// Measured motion of a vehicle as plain numbers or packs, see LawNumbers.
+/// Measured motion of a vehicle as plain numbers or packs, see InputNumbers.
 template <class T>
 struct MeasuredNumbers {
   laws::Vec3<T> position;

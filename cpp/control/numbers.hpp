@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "attitude_law.hpp"
-#include "lane_law.hpp"
+#include "attitude_formulas.hpp"
+#include "lane_controller.hpp"
 #include "quadcore/control/attitude_loop.hpp"
-#include "quadcore/control/control_law.hpp"
+#include "quadcore/control/wrench_controller.hpp"
 
 /// \file
 /// Conversions between Eigen's types and plain numbers.
@@ -46,10 +46,10 @@ Demand demand_of(const DemandNumbers<double>& demand);
 
 /// Call a control law with the numbers of its input and return its demand.
 /// \param model  see flat_state()
-template <class Law>
-Demand call_with_numbers(const LawInput& input, ControlLaw::Feeds feeds,
-                         const ModelledVehicle& model, const Law& law) {
-  using Feeds = ControlLaw::Feeds;
+template <class Function>
+Demand call_with_numbers(const ControllerInput& input, WrenchController::Feeds feeds,
+                         const ModelledVehicle& model, const Function& function) {
+  using Feeds = WrenchController::Feeds;
   const FlatState* flat = feeds == Feeds::nothing ? nullptr : input.flat;
   std::optional<FlatState> computed;
   if (feeds != Feeds::nothing && !flat) {
@@ -60,7 +60,7 @@ Demand call_with_numbers(const LawInput& input, ControlLaw::Feeds feeds,
   const RotorsNumbers<double> rotors{{input.exerted.thrust, numbers_of(input.exerted.torque_F)},
                                      numbers_of(input.h_F),
                                      input.saturated ? 1.0 : 0.0};
-  return demand_of(law(LawNumbers<double>{input.period, input.begins, now, wanted, rotors}));
+  return demand_of(function(InputNumbers<double>{input.period, input.begins, now, wanted, rotors}));
 }
 
 }  // namespace quadcore::control

@@ -5,7 +5,7 @@
 namespace quadcore::control {
 
 ReferencePreview::ReferencePreview(const Controller& controller) {
-  using Feeds = ControlLaw::Feeds;
+  using Feeds = WrenchController::Feeds;
   const Feeds feeds = controller.feeds();
   if (feeds == Feeds::nothing) return;
   table_ = std::make_unique<FlatTable>(controller.model(), feeds == Feeds::flat_state_with_drag);

@@ -12,8 +12,8 @@ Tracking::Tracking(const ModelledVehicle& model, const TrackingGains& g)
                numbers_of(static_cast<const AttitudeGains&>(g)),
                numbers_of(model)} {}
 
-ControlLaw::Feeds Tracking::feeds() const {
-  using Feeds = ControlLaw::Feeds;
+WrenchController::Feeds Tracking::feeds() const {
+  using Feeds = WrenchController::Feeds;
   if (!switches_.flat_rates) return Feeds::nothing;
   return switches_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
 }

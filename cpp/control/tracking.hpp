@@ -4,7 +4,7 @@
 
 #include "attitude_settings.hpp"
 #include "numbers.hpp"
-#include "tracking_law.hpp"
+#include "tracking_formulas.hpp"
 
 namespace quadcore::control {
 
@@ -49,21 +49,21 @@ class Tracking {
  public:
   Tracking(const ModelledVehicle& model, const TrackingGains& gains);
 
-  const LawSwitches& switches() const { return switches_; }
+  const ControllerSwitches& switches() const { return switches_; }
   const TrackingNumbers<double>& numbers() const { return numbers_; }
-  /// See ControlLaw::feeds().
-  ControlLaw::Feeds feeds() const;
-  /// Return law(TrackingLaw), a demand.
-  template <class Law>
-  Demand demand(const LawInput& input, const Law& law) const {
-    return call_with_numbers(input, feeds(), model_, [&](const LawNumbers<double>& numbers) {
-      return law(TrackingLaw<double>{switches_, numbers_, numbers});
+  /// See WrenchController::feeds().
+  WrenchController::Feeds feeds() const;
+  /// Return function(TrackingFormulas), a demand.
+  template <class Function>
+  Demand demand(const ControllerInput& input, const Function& function) const {
+    return call_with_numbers(input, feeds(), model_, [&](const InputNumbers<double>& numbers) {
+      return function(TrackingFormulas<double>{switches_, numbers_, numbers});
     });
   }
 
  private:
   ModelledVehicle model_;
-  LawSwitches switches_;
+  ControllerSwitches switches_;
   TrackingNumbers<double> numbers_;
 };
 

@@ -37,7 +37,7 @@ void Instance::initialise() {
   outputs_.forget();
   simulation_ = made();
   tuned_ = false;
-  told_ = 0;
+  reported_warnings_ = 0;
   is_flying_ = false;
 }
 
@@ -106,7 +106,7 @@ void Instance::reset() {
   settings_ = Settings(file_);
   start_time_ = 0;
   is_flying_ = tuned_ = false;
-  told_ = 0;
+  reported_warnings_ = 0;
 }
 
 double Instance::time() const { return start_time_ + (simulation_ ? flown_time() : 0); }
@@ -188,13 +188,13 @@ void Instance::restore(const SavedState& state) {
   start_time_ = state.start_time;
   is_flying_ = state.is_flying;
   tuned_ = false;
-  told_ = simulation_ ? simulation_->warnings().size() : 0;
+  reported_warnings_ = simulation_ ? simulation_->warnings().size() : 0;
 }
 
 std::vector<std::string> Instance::take_warnings() {
   if (!simulation_) return {};
   const std::vector<std::string>& all = simulation_->warnings();
-  const std::size_t first = std::min(std::exchange(told_, all.size()), all.size());
+  const std::size_t first = std::min(std::exchange(reported_warnings_, all.size()), all.size());
   return {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()};
 }
 

@@ -65,7 +65,7 @@ class Instance {
   Outputs outputs_;
   bool is_flying_ = false;  ///< whether the initialisation has ended
   bool tuned_ = false;      ///< whether a parameter has changed since the simulation was created
-  std::size_t told_ = 0;    ///< number of reported warnings of the simulation
+  std::size_t reported_warnings_ = 0;  ///< number of reported warnings of the simulation
 };
 
 }  // namespace quadcore::fmu

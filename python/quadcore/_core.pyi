@@ -482,7 +482,7 @@ class ReferenceShape(metaclass=_Bound):
 class Controller(metaclass=_Bound):
     def __init__(
         self,
-        law: str,
+        name: str,
         believed: Simulation,
         flown: Simulation,
         values: Dict[str, float],

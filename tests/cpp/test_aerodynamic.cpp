@@ -115,8 +115,8 @@ TEST_CASE("each force law is the thesis', in whatever motion, with and without a
   }
 }
 
-TEST_CASE("drag that drives is told where a propeller's axis points down, once") {
-  int told = 0;
+TEST_CASE("drag that drives is reported where a propeller's axis points down, once") {
+  int warned = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     PluginBench bench("aerodynamic", everything, rotor_count);
     Kinematics motion = any_motion(seed, rotor_count);
@@ -128,10 +128,10 @@ TEST_CASE("drag that drives is told where a propeller's axis points down, once")
     }
     for (int i = 0; i < 3; ++i) bench.update(motion, 0.1 * i, 1e-3);
     CHECK(bench.warnings.size() == (down ? 1 : 0));
-    told += down;
+    warned += down;
   }
-  CHECK(told > 5);
-  CHECK(told < 100);
+  CHECK(warned > 5);
+  CHECK(warned < 100);
 }
 
 TEST_CASE("an axis against the propeller's z is warned of, one across it is not") {
@@ -146,12 +146,12 @@ TEST_CASE("an axis against the propeller's z is warned of, one across it is not"
             "<gazebo><plugin name=\"it\" filename=\"libaerodynamic_plugin.so\">" + thrust_only +
             "</plugin></gazebo>\n"),
       World{}, {});
-  std::string told;
-  for (const std::string& warning : simulation.warnings()) told += warning;
-  CHECK_FALSE(contains(told, "'turn0 0 1'"));
-  CHECK_FALSE(contains(told, "'turn1 0 0'"));
-  CHECK(contains(told, "'turn0 0.6 -0.8'"));
-  CHECK(contains(told, "'turn0 0 -1'"));
+  std::string messages;
+  for (const std::string& warning : simulation.warnings()) messages += warning;
+  CHECK_FALSE(contains(messages, "'turn0 0 1'"));
+  CHECK_FALSE(contains(messages, "'turn1 0 0'"));
+  CHECK(contains(messages, "'turn0 0.6 -0.8'"));
+  CHECK(contains(messages, "'turn0 0 -1'"));
 }
 
 TEST_CASE("loads are finite only if those on every rotor are") {

@@ -150,7 +150,7 @@ TEST_CASE("the lowest point of a tilted cylinder is that of its rims") {
   }
 }
 
-TEST_CASE("whether sweeps converge is found for each vehicle, and told") {
+TEST_CASE("whether sweeps converge is found for each vehicle, and reported") {
   const Model shipped = read_model(Document::read(TEST_DATA "/gazebo11/cases/C1_drop/model.urdf"));
   const auto method = [](const std::string& engine, const Model& model, int sweeps,
                          double cfm = 0) {

@@ -20,11 +20,11 @@ import quadcore as qc
 class Slow:
     delay = 0.001
     def reset(self, vehicle):
-        self.law = qc.controllers.geometric()
-        self.law.reset(vehicle)
+        self.inner = qc.controllers.geometric()
+        self.inner.reset(vehicle)
     def __call__(self, t, state, reference):
         time.sleep(0.003)
-        return self.law(t, state, reference)
+        return self.inner(t, state, reference)
 
 class Fails(Slow):
     def __call__(self, t, state, reference):

@@ -1,4 +1,4 @@
-"""Laws and references, flown from Python."""
+"""Controllers and references from Python."""
 
 from __future__ import annotations
 
@@ -171,12 +171,12 @@ def test_a_delay_equals_that_of_a_controller_that_waits_by_itself():
         rate = 500
 
         def reset(self, simulation):
-            self.law = controllers.geometric()
-            self.law.reset(simulation)
+            self.inner = controllers.geometric()
+            self.inner.reset(simulation)
             self.waiting = []
 
         def __call__(self, t, state, reference):
-            self.waiting.append(self.law(t, state, reference))
+            self.waiting.append(self.inner(t, state, reference))
             return self.waiting.pop(0) if len(self.waiting) > 3 else self.waiting[0]
 
     one = quadrotor("eigen").run(1, controller=controllers.geometric(delay=0.006), reference=hover)

@@ -150,11 +150,11 @@ def test_what_is_no_command_ends_the_flight_and_its_log_stays(speeds, descriptio
 def test_an_exception_of_a_controller_carries_the_log_so_far():
     def controller(t, state, reference):
         if t > 0.0495:
-            raise ZeroDivisionError("of the law")
+            raise ZeroDivisionError("of the controller")
         return HOVER
 
     simulation = quadrotor("eigen")
-    with pytest.raises(ZeroDivisionError, match="of the law") as raised:
+    with pytest.raises(ZeroDivisionError, match="of the controller") as raised:
         simulation.run(1, controller=controller)
     assert len(raised.value.log) == 51
     assert np.array_equal(raised.value.log.table, quadrotor("eigen").run(0.05, [[0, *HOVER]]).table)

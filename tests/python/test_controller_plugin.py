@@ -1,4 +1,4 @@
-"""Laws and references as plugins."""
+"""Controllers and references as plugins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Laws on vehicles without the symmetries of the shipped ones."""
+"""Controllers on vehicles without the symmetries of the shipped ones."""
 
 from __future__ import annotations
 

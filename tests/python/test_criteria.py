@@ -22,13 +22,13 @@ import quadcore as qc
 class Costly:
     def __init__(self):
         self.log = {"cost": 0.0, "calls": 0}
-        self.law = qc.controllers.geometric()
+        self.inner = qc.controllers.geometric()
     def reset(self, vehicle):
-        self.law.reset(vehicle)
+        self.inner.reset(vehicle)
     def __call__(self, t, state, reference):
         self.log["cost"] = 2 * t
         self.log["calls"] += 1
-        return self.law(t, state, reference)
+        return self.inner(t, state, reference)
 
 class Grows(Costly):
     def __call__(self, t, state, reference):

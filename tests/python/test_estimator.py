@@ -1,4 +1,4 @@
-"""examples/estimator: the geometric law on what sensors say."""
+"""examples/estimator: the geometric controller with measured states."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ def simulation(seed, engine="eigen", **parameters):
 
 
 class Watched:
-    """A law, and how far its estimate is from the truth at each call."""
+    """A controller and the errors of its estimate at each call."""
 
     def __init__(self, controller, flown):
-        self.rate, self.law, self.flown = controller.rate, controller, flown
+        self.rate, self.observed, self.flown = controller.rate, controller, flown
         self.reset = controller.reset
         self.errors, self.believed = [], []
 
     def __call__(self, t, state, reference):
-        speeds = self.law(t, state, reference)
-        estimate, truth = self.law.estimate, self.flown.state
+        speeds = self.observed(t, state, reference)
+        estimate, truth = self.observed.estimate, self.flown.state
         turn = Rotation.from_quat(truth.orientation).inv() * Rotation.from_quat(
             estimate.orientation
         )

@@ -1,4 +1,4 @@
-"""Laws from outside: a plugin built out of the tree, and a learned policy."""
+"""Controllers from outside: a plugin built out of the tree, and a learned policy."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def away(log, reference):
 
 @pytest.fixture(scope="module")
 def plugin_folder(tmp_path_factory):
-    return build_once(EXAMPLES / "law_plugin", tmp_path_factory)
+    return build_once(EXAMPLES / "controller_plugin", tmp_path_factory)
 
 
 @pytest.fixture
 def guided_urdf(plugin_folder, tmp_path, monkeypatch):
     monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(plugin_folder))
     text = qc.read_model("quadrotor", {"sim_slow": 1}).document.text
-    controller = plugin("tilt_law", {"rate": 400})
+    controller = plugin("tilt_controller", {"rate": 400})
     file = tmp_path / "guided.urdf"
     circle = plugin("reference", {"shape": "circle", "rate": 0.7})
     file.write_text(with_plugins(text, controller, circle))

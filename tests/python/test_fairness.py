@@ -22,17 +22,17 @@ import quadcore as qc
 
 class Honest:
     def reset(self, vehicle):
-        self.law = qc.controllers.geometric()
-        self.law.reset(vehicle)
+        self.inner = qc.controllers.geometric()
+        self.inner.reset(vehicle)
     def __call__(self, t, state, reference):
-        return self.law(t, state, reference)
+        return self.inner(t, state, reference)
 
 class ReadsState(Honest):
     def reset(self, sim):
         super().reset(sim)
         self.state = sim.state
     def __call__(self, t, state, reference):
-        return self.law(t, self.state, reference)
+        return self.inner(t, self.state, reference)
 
 class Moves(Honest):
     def reset(self, sim):
@@ -56,12 +56,12 @@ class Heals(Pushes):
 
 class Peeks(Honest):
     def __call__(self, t, state, reference):
-        return self.law(t, state.topic.__self__.state, reference)
+        return self.inner(t, state.topic.__self__.state, reference)
 
 class ReadsFault(Honest):
     def __call__(self, t, state, reference):
         state.topic("effectiveness")
-        return self.law(t, state, reference)
+        return self.inner(t, state, reference)
 
 class Measures(Honest):
     def reset(self, vehicle):

@@ -39,16 +39,16 @@ BEGIN = dict(zip([*TRUE, *LINEAR], WRONG))
 
 
 class Excited:
-    """A law with four sines on top of what it commands, each rotor's otherwise."""
+    """A controller that adds four sines to its commands, different for each rotor."""
 
     rate = 100.0
     spins = ()
 
     def __init__(self):
-        self.law = qc.controllers.geometric(rate=self.rate)
+        self.inner = qc.controllers.geometric(rate=self.rate)
 
     def reset(self, simulation):
-        self.law.reset(simulation)
+        self.inner.reset(simulation)
         self.rows = []
 
     def __call__(self, t, state, reference):
@@ -56,7 +56,7 @@ class Excited:
             [np.sin(2 * np.pi * f * t + k * phase) for k, f in enumerate((0.7, 1.3, 2.1, 3.7))]
             for phase in (0.3, 1.1, 2.2, 4.0)
         ]
-        speeds = np.array(self.law(t, state, reference))
+        speeds = np.array(self.inner(t, state, reference))
         speeds += 12 * np.array([1, -1, 1, -1]) * np.sum(sines, axis=1)
         self.rows.append([t, *speeds])
         return speeds
@@ -103,7 +103,7 @@ def test_a_noisy_flight_gives_back_the_parameters_it_was_flown_with(found):
     assert str(together) == SUM
     assert together.value == pytest.approx(sum(LINEAR.values()), rel=0.01)
     assert together.deviation < 1e-4
-    # One law: of three numbers one.
+    # One controller: one of three numbers.
     assert sum(value < 1e-3 for value in found.identified.singular_values) == 2
     assert all(np.isnan(found.identified.deviations[name]) for name in LINEAR)
     # What is left over is the noise of the odometry.

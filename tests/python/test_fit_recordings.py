@@ -38,16 +38,16 @@ class Excited:
 
     def __init__(self, seed):
         random = np.random.default_rng(seed)
-        self.law = qc.controllers.geometric(rate=self.rate)
+        self.inner = qc.controllers.geometric(rate=self.rate)
         self.phases = random.uniform(0, 2 * np.pi, (4, 4))
         self.rates = random.uniform(1, 6, (4, 4))
 
     def reset(self, simulation):
-        self.law.reset(simulation)
+        self.inner.reset(simulation)
 
     def __call__(self, t, state, reference):
         sines = np.sin(2 * np.pi * self.rates * t + self.phases).sum(axis=1)
-        return self.law(t, state, reference) * (1 + 0.01 * sines)
+        return self.inner(t, state, reference) * (1 + 0.01 * sines)
 
 
 def fly(reference, parameters, duration=8.0, seed=0):

@@ -79,7 +79,7 @@ def test_an_importer_finds_nothing_wrong_and_every_variable_explained(fmus, engi
 
 
 def read_odometry(vehicle):
-    """What the odometry of a simulation or of an FMU says, as a law reads it."""
+    """Return the odometry of a simulation or of an FMU as a controller reads it."""
     message = vehicle.topic("odom")
     parts = {
         "position": ("x", "y", "z"),
@@ -96,7 +96,7 @@ def read_odometry(vehicle):
 def test_a_controller_that_closes_the_loop_flies_the_spiral_as_on_the_simulation(
     engine, import_fmu
 ):
-    """Every bit of states, odometry and wrenches, at whole steps of the law's rate."""
+    """Return the bits of states, odometry and wrenches at whole steps of the controller's rate."""
     fast = {"xacro_args": {"max_velocity": "1e6"}}
     instance = import_fmu(engine, **fast)
     simulation = qc.Simulation("quadrotor", engine=engine, **fast)

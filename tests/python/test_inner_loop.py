@@ -1,4 +1,4 @@
-"""Laws that end above the rotors: attitudes and rates with a thrust."""
+"""Controllers that end above the rotors: attitudes and rates with a thrust."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_it_commands_what_the_geometric_controller_does_inside():
     inside = controllers.geometric(**plain)
 
     class Same:
-        """The outer loop of the law, once more."""
+        """The outer loop of the controller, written again."""
 
         inner_loop = qc.InnerLoop(drag=False)
 

@@ -70,18 +70,18 @@ def test_flights_on_a_batch_give_the_margins_of_single_flights(monkeypatch, tmp_
 
 
 class Own:
-    """A law of quadcore in a coat, which makes it one of one's own."""
+    """Wrap a built-in controller, so that it counts as a user's."""
 
     rate = 500.0
 
     def __init__(self):
-        self._law = controllers.geometric()
+        self._inner = controllers.geometric()
 
     def reset(self, simulation):
-        self._law.reset(simulation)
+        self._inner.reset(simulation)
 
     def __call__(self, t, state, reference):
-        return self._law(t, state, reference)
+        return self._inner(t, state, reference)
 
 
 @pytest.mark.parametrize("change", [{"thrust": 1.5}, {"delay": 0.01}, {"thrust": 0.9, "lag": 1.3}])

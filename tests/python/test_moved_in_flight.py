@@ -91,7 +91,7 @@ def test_a_reference_that_moves_the_vehicle_which_is_put_onto_it_is_refused():
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_who_only_reads_and_publishes_flies_the_same_bytes(engine):
-    """A law may look ahead on a simulation of its own, with what this one is like now."""
+    """A controller may predict with a simulation of its own in the present state."""
 
     class Looks:
         def reset(self, simulation):

@@ -44,7 +44,7 @@ def pages(tmp_path_factory):
     assert vehicle.name == NAME
     speeds = ("--commands", f"{folder}/speeds.csv", "--duration", "2")
     kp, drag = "motorpid_plugin.kp=0.0005,0.001", "drone_plugin.translationalDragCoeff=0,0.01"
-    laws = ("--controller", "geometric,indi", "--reference", "circle,hover", "--seeds", "2")
+    controllers = ("--controller", "geometric,indi", "--reference", "circle,hover", "--seeds", "2")
     log, flown = f"{folder}/log.csv", f"{folder}/flown.csv"
     thrust = "drone_plugin.rotorThrustCoeff"
     guided = ("--controller", "geometric", "--reference", "eight", "--log-every", "10")
@@ -54,7 +54,7 @@ def pages(tmp_path_factory):
         ("run", str(model), *FAST, *speeds),
         ("play", log, "--names", NAME, "-o", f"{folder}/play/report.html", "--model", str(model)),
         ("compare", str(model), "--vary", kp, "--vary", drag, *FAST, *speeds),
-        ("evaluate", *laws, *FAST, "--duration", "0.5", "--model", str(model)),
+        ("evaluate", *controllers, *FAST, "--duration", "0.5", "--model", str(model)),
         ("sweep", f"{folder}/sweep.yaml", "--quiet", "--model", str(model)),
         ("validate", str(model), "--duration", "0.2", "--drag", "none", "--quiet"),
         (

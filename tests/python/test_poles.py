@@ -1,4 +1,4 @@
-"""Poles of the cascaded laws, beside the linearised flight and the arithmetic by hand."""
+"""Poles of the cascaded controllers, compared with linearised flights and closed formulas."""
 
 from __future__ import annotations
 

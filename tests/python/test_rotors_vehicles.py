@@ -1,4 +1,4 @@
-"""The vehicles of RotorS, flown by laws of quadcore."""
+"""The vehicles of RotorS, with controllers of quadcore."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ FLIGHT = ["--duration", "4", "--xacro", "sim_slow:=1", "--quiet"]
 
 
 def tenth(name="pd"):
-    """A law whose gains are a tenth of those it has by itself."""
+    """A controller whose gains are a tenth of the defaults."""
     (table,) = (specs for controller, _, specs in qc._core.controllers() if controller == name)
     numbers = {s.name: float(s.default) / 10 for s in table if s.name[:3] in ("kp_", "kd_")}
     assert len(numbers) == 8
@@ -107,7 +107,7 @@ def test_gains_that_lose_a_held_out_case_are_refused():
 
 
 def test_gains_that_do_not_bring_a_vehicle_back_are_refused():
-    """On its reference, in still air, a law that knows all flies well with next to no gains."""
+    """On its reference, in still air, a controller with a perfect model needs almost no gains."""
     weak = qc.controllers.pd_compensated(kp_xy=0.02, kd_xy=0.02, kp_z=0.02, kd_z=0.02)
     with pytest.raises(qc.FlightError, match="do not return to hover from an offset") as caught:
         qc.tune(weak, budget=1, references=["ramp"], held_out=["hover"], **SHORT)

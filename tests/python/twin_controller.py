@@ -1,4 +1,4 @@
-"""The geometric law once more, in numpy, for the shipped quadrotor at its own numbers.
+"""The geometric controller written again, in numpy, for the shipped quadrotor at its own numbers.
 
 Nothing is taken from the core: masses and coefficients stand in the URDF, and rates and
 accelerations of the attitude are derivatives by complex steps.

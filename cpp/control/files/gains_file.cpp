@@ -14,11 +14,11 @@ namespace {
 const std::vector<std::string> keys = {"law", "vehicle", "rate", "delay", "parameters", "history"};
 
 /// Return whether a controller is `MODULE:NAME`, `FILE.py[:NAME]` or the plugin `FILE.so`.
-bool is_user_controller(const std::string& law) {
+bool is_user_controller(const std::string& name) {
   const auto ends = [&](const std::string& suffix) {
-    return law.size() > 3 && law.compare(law.size() - 3, 3, suffix) == 0;
+    return name.size() > 3 && name.compare(name.size() - 3, 3, suffix) == 0;
   };
-  return law.find(':') != std::string::npos || ends(".py") || ends(".so");
+  return name.find(':') != std::string::npos || ends(".py") || ends(".so");
 }
 
 }  // namespace
@@ -57,10 +57,10 @@ Gains read_gains(const std::string& path) {
                             joined(keys) + ".");
     }
   }
-  const auto check = [&](const YAML::Node& node, const std::string& law, const Values& values) {
-    if (is_user_controller(law)) return;  // only Python knows its parameters
+  const auto check = [&](const YAML::Node& node, const std::string& name, const Values& values) {
+    if (is_user_controller(name)) return;  // only Python knows its parameters
     try {
-      check_values("controller '" + law + "'", Controller::table(law), values);
+      check_values("controller '" + name + "'", Controller::table(name), values);
     } catch (const InputError& error) {
       file.refuse(node, error.what());
     }

@@ -109,7 +109,7 @@ const Settings<CrazyfliePid::Gains>& CrazyfliePid::settings() {
 CrazyfliePid::CrazyfliePid(const ModelledVehicle& model, const Gains& gains)
     : gains_(gains), mix_(model, gains.hover_count, crazyflie_full, 1) {}
 
-Demand CrazyfliePid::demand(const LawInput& input, double* numbers) const {
+Demand CrazyfliePid::demand(const ControllerInput& input, double* numbers) const {
   auto& memory = memory_as<Memory>(numbers);
   const Gains& g = gains_;
   const Vector3d rpy = rpy_from_quaternion(input.now.orientation);
@@ -152,7 +152,7 @@ Demand CrazyfliePid::demand(const LawInput& input, double* numbers) const {
 }
 
 /// Set roll, pitch and thrust from the errors of position and velocity, in axes of the yaw.
-void CrazyfliePid::follow_position(const LawInput& input, double yaw, double period,
+void CrazyfliePid::follow_position(const ControllerInput& input, double yaw, double period,
                                    Memory& memory) const {
   const Gains& g = gains_;
   const auto [s, c] = elementary::sincos(yaw);

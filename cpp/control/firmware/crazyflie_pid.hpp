@@ -11,7 +11,7 @@ namespace quadcore::control {
 /// give motor commands. Angles are in degrees, and commands in counts from 0 to 65535. The position
 /// loop runs at 100 Hz, the rest at each call. Only position and yaw of the reference are used, as
 /// by position set-points of the firmware.
-class CrazyfliePid final : public ControlLaw {
+class CrazyfliePid final : public WrenchController {
  public:
   struct Gains {
     double pos_xy_kp, pos_xy_max, pos_z_kp, pos_z_ki, pos_z_max;
@@ -33,10 +33,11 @@ class CrazyfliePid final : public ControlLaw {
     double last_yaw, last_rates[2];
   };
   static constexpr std::size_t memory_size = sizeof(Memory) / sizeof(double);
-  Demand demand(const LawInput& input, double* memory) const override;
+  Demand demand(const ControllerInput& input, double* memory) const override;
 
  private:
-  void follow_position(const LawInput& input, double yaw, double period, Memory& memory) const;
+  void follow_position(const ControllerInput& input, double yaw, double period,
+                       Memory& memory) const;
 
   Gains gains_;
   MotorMix mix_;

@@ -74,7 +74,7 @@ Mellinger::Mellinger(const ModelledVehicle& model, const Gains& gains)
       hover_(gains.mass_thrust * mass_of_gains * standard_gravity),
       mix_(model, hover_, crazyflie_full, 1) {}
 
-Demand Mellinger::demand(const LawInput& input, double* numbers) const {
+Demand Mellinger::demand(const ControllerInput& input, double* numbers) const {
   auto& memory = memory_as<Memory>(numbers);
   const Gains& g = gains_;
   std::optional<FlatState> computed;
@@ -111,7 +111,7 @@ Demand Mellinger::demand(const LawInput& input, double* numbers) const {
 }
 
 /// Return the wanted force of the rotors in W [N].
-Vector3d Mellinger::force_W(const LawInput& input, Memory& memory) const {
+Vector3d Mellinger::force_W(const ControllerInput& input, Memory& memory) const {
   const Gains& g = gains_;
   const Vector3d error = input.wanted.position - input.now.position;
   const Vector3d limit(g.force_xy_limit, g.force_xy_limit, g.force_z_limit);

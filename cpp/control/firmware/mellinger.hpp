@@ -8,7 +8,7 @@ namespace quadcore::control {
 /// equations with its default gains (bitcraze/crazyflie-firmware 2a18fc2:
 /// src/modules/src/controller/controller_mellinger.c). The forces of the firmware are for a vehicle
 /// of 29 g. Here they are proportional to the modelled mass. Torques are motor commands in counts.
-class Mellinger final : public ControlLaw {
+class Mellinger final : public WrenchController {
  public:
   struct Gains {
     double force_xy_kp, force_xy_ki, force_xy_kd, force_xy_limit;
@@ -26,10 +26,10 @@ class Mellinger final : public ControlLaw {
   };
   static constexpr std::size_t memory_size = sizeof(Memory) / sizeof(double);
   Feeds feeds() const override { return Feeds::flat_state; }
-  Demand demand(const LawInput& input, double* memory) const override;
+  Demand demand(const ControllerInput& input, double* memory) const override;
 
  private:
-  Vector3d force_W(const LawInput& input, Memory& memory) const;
+  Vector3d force_W(const ControllerInput& input, Memory& memory) const;
 
   ModelledVehicle model_;
   Gains gains_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/control/control_law.hpp"
+#include "quadcore/control/wrench_controller.hpp"
 
 namespace quadcore::control {
 

@@ -102,7 +102,7 @@ const Settings<Px4::Gains>& Px4::settings() {
 Px4::Px4(const ModelledVehicle& model, const Gains& gains)
     : gains_(gains), mix_(model, gains.mpc_thr_hover, 1, 2) {}
 
-Demand Px4::demand(const LawInput& input, double* numbers) const {
+Demand Px4::demand(const ControllerInput& input, double* numbers) const {
   auto& memory = memory_as<Memory>(numbers);
   if (input.begins) {
     Eigen::Map<Vector3d>(memory.last_velocity) = input.now.linear_velocity;
@@ -113,7 +113,7 @@ Demand Px4::demand(const LawInput& input, double* numbers) const {
   return mix_.demand({f_W.norm(), tau.x(), tau.y(), tau.z()});
 }
 
-Vector3d Px4::wanted_velocity(const LawInput& input) const {
+Vector3d Px4::wanted_velocity(const ControllerInput& input) const {
   const Gains& g = gains_;
   const Vector3d& ahead = input.wanted.velocity;
   const Vector3d back = Vector3d(g.mpc_xy_p, g.mpc_xy_p, g.mpc_z_p)
@@ -125,7 +125,7 @@ Vector3d Px4::wanted_velocity(const LawInput& input) const {
 }
 
 /// Return the wanted thrust as a vector of motor commands, in W.
-Vector3d Px4::thrust_W(const LawInput& input, Memory& memory) const {
+Vector3d Px4::thrust_W(const ControllerInput& input, Memory& memory) const {
   const Gains& g = gains_;
   const Vector3d kp(g.mpc_xy_vel_p_acc, g.mpc_xy_vel_p_acc, g.mpc_z_vel_p_acc);
   const Vector3d ki(g.mpc_xy_vel_i_acc, g.mpc_xy_vel_i_acc, g.mpc_z_vel_i_acc);
@@ -171,7 +171,7 @@ Vector3d Px4::thrust_W(const LawInput& input, Memory& memory) const {
 
 /// Return the angular velocity that turns z of F to a direction, and x towards the yaw with less
 /// weight, in F [rad/s].
-Vector3d Px4::wanted_rates(const LawInput& input, const Vector3d& thrust_W) const {
+Vector3d Px4::wanted_rates(const ControllerInput& input, const Vector3d& thrust_W) const {
   const Gains& g = gains_;
   const Quaterniond& q_WF = input.now.orientation;
   const Vector3d z_W = thrust_W.normalized();
@@ -198,7 +198,7 @@ Vector3d Px4::wanted_rates(const LawInput& input, const Vector3d& thrust_W) cons
 }
 
 /// Return the torque outputs for an angular velocity.
-Vector3d Px4::torque(const LawInput& input, const Vector3d& wanted, Memory& memory) const {
+Vector3d Px4::torque(const ControllerInput& input, const Vector3d& wanted, Memory& memory) const {
   const Gains& g = gains_;
   const Vector3d kp(g.mc_rprate_p, g.mc_rprate_p, g.mc_yawrate_p);
   const Vector3d ki(g.mc_rprate_i, g.mc_rprate_i, g.mc_yawrate_i);

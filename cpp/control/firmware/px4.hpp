@@ -12,7 +12,7 @@ namespace quadcore::control {
 /// Zurich, 2013), and rates give normalised torques. Motor commands are 0 to 1, and the thrust of a
 /// rotor is proportional to the squared command. All loops run at each call. The parameters have
 /// the names of those of PX4.
-class Px4 final : public ControlLaw {
+class Px4 final : public WrenchController {
  public:
   struct Gains {
     double mpc_xy_p, mpc_z_p, mpc_xy_vel_p_acc, mpc_xy_vel_i_acc, mpc_xy_vel_d_acc;
@@ -33,13 +33,13 @@ class Px4 final : public ControlLaw {
     LowPassMemory rate_filters[3];
   };
   static constexpr std::size_t memory_size = sizeof(Memory) / sizeof(double);
-  Demand demand(const LawInput& input, double* memory) const override;
+  Demand demand(const ControllerInput& input, double* memory) const override;
 
  private:
-  Vector3d wanted_velocity(const LawInput& input) const;
-  Vector3d thrust_W(const LawInput& input, Memory& memory) const;
-  Vector3d wanted_rates(const LawInput& input, const Vector3d& thrust_W) const;
-  Vector3d torque(const LawInput& input, const Vector3d& wanted, Memory& memory) const;
+  Vector3d wanted_velocity(const ControllerInput& input) const;
+  Vector3d thrust_W(const ControllerInput& input, Memory& memory) const;
+  Vector3d wanted_rates(const ControllerInput& input, const Vector3d& thrust_W) const;
+  Vector3d torque(const ControllerInput& input, const Vector3d& wanted, Memory& memory) const;
 
   Gains gains_;
   MotorMix mix_;

@@ -130,17 +130,17 @@ GyrostatStep EigenEngine::view() {
 void EigenEngine::step(double time, double dt, const ForceField& forces) {
   forces_ = &forces;
   const auto put = [](const auto& from, auto& to) { to = {from.data(), from.size()}; };
-  const ForceLaws& told = forces.laws();
-  put(told.rotor_forces, step_.rotor_forces);
+  const ForceLaws& force_laws = forces.laws();
+  put(force_laws.rotor_forces, step_.rotor_forces);
   step_.laws_turn = step_.normals_turn;
-  for (const RotorForces& law : told.rotor_forces) {
+  for (const RotorForces& law : force_laws.rotor_forces) {
     step_.laws_turn |= (law.acting & laws::in_link_axes) != 0;
   }
-  put(told.frame_drags, step_.frame_drags);
-  put(told.airframes, step_.airframes);
-  put(told.motor_torques, step_.motor_torques);
+  put(force_laws.frame_drags, step_.frame_drags);
+  put(force_laws.airframes, step_.airframes);
+  put(force_laws.motor_torques, step_.motor_torques);
   step_.evaluate_rest = nullptr;
-  if (!told.complete) {
+  if (!force_laws.complete) {
     step_.evaluate_rest = [](void* engine) { static_cast<EigenEngine*>(engine)->evaluate_rest(); };
   }
   if (ground_ && is_at_ground(dt)) {

@@ -44,10 +44,10 @@ template <class T, bool rest, class Rotors>
 QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const Rotors& rotors) {
   laws::RotorLoads<T> loads{laws::broadcast<T>(Four{}), laws::broadcast<T>(Four{}), T{}};
   if constexpr (rest) {
-    const double* told = g.loads + rotor_offset(LoadRow::count, rotors.i);
-    loads.f_F = laws::load3<T>(told + LoadRow::force * widest_lanes);
-    loads.reaction_F = laws::load3<T>(told + LoadRow::reaction * widest_lanes);
-    loads.joint_torque = laws::load<T>(told + LoadRow::joint_torque * widest_lanes);
+    const double* rows = g.loads + rotor_offset(LoadRow::count, rotors.i);
+    loads.f_F = laws::load3<T>(rows + LoadRow::force * widest_lanes);
+    loads.reaction_F = laws::load3<T>(rows + LoadRow::reaction * widest_lanes);
+    loads.joint_torque = laws::load<T>(rows + LoadRow::joint_torque * widest_lanes);
   }
   g.rotor_forces.for_each([&](const RotorForces& law) QUADCORE_INLINED {
     laws::add_rotor_forces(laws::laws_of_rotors<T>(law, rotors.i), rotors, loads);

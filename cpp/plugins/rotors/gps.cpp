@@ -31,7 +31,7 @@ class Gps final : public Plugin {
         place_noise_(along(setup, noise_tag("position", "horizontal", "stddev"),
                            noise_tag("position", "vertical", "stddev"))),
         velocity_noise_(along(setup, "horVelStdDev", "verVelStdDev")),
-        told_(along(setup, "horPosStdDev", "verPosStdDev")),
+        deviation_(along(setup, "horPosStdDev", "verPosStdDev")),
         fix_(setup.topics.publishes(topic_of(setup, "gpsTopic"),
                                     messages::kind_of<messages::Fix>())),
         speed_(setup.topics.publishes(topic_of(setup, "groundSpeedTopic"),
@@ -51,8 +51,8 @@ class Gps final : public Plugin {
     fix.position = k.p_WF + k.R_WF * p_FS_F_ + draw(place_noise_);
     fix.velocity = k.v_WS_W(p_FS_F_) + draw(velocity_noise_);
     earth_.locate(fix);
-    fix.horizontal_variance = told_.x() * told_.x();
-    fix.vertical_variance = told_.z() * told_.z();
+    fix.horizontal_variance = deviation_.x() * deviation_.x();
+    fix.vertical_variance = deviation_.z() * deviation_.z();
     fix.velocity_variance = velocity_noise_.cwiseAbs2().maxCoeff();
     sample.topics.publish(fix_, sample.time, fix);
     sample.topics.publish(speed_, sample.time, messages::GroundSpeed{fix.velocity});
@@ -88,8 +88,8 @@ class Gps final : public Plugin {
   sensing::Rate rate_;
   bool each_step_;
   gps::Earth earth_;
-  Vector3d place_noise_, velocity_noise_, told_;  ///< standard deviations [m], [m/s], [m]
-  std::size_t fix_, speed_;                       ///< topics
+  Vector3d place_noise_, velocity_noise_, deviation_;  ///< standard deviations [m], [m/s], [m]
+  std::size_t fix_, speed_;                            ///< topics
 };
 
 PluginDescriptor describe() {

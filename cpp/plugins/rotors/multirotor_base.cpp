@@ -16,10 +16,10 @@ class MultirotorBase final : public Plugin {
         topic_(
             setup.topics.publishes(topic_of(setup, "motorPubTopic"), messages::speeds(rotors_))) {
     const auto& plugins = setup.model.plugins;
-    const bool is_told = std::any_of(plugins.begin(), plugins.end(), [](const PluginElement& p) {
-      return p.filename == "libodometry_plugin.so";
-    });
-    if (is_told) return;
+    const bool has_odometry =
+        std::any_of(plugins.begin(), plugins.end(),
+                    [](const PluginElement& p) { return p.filename == "libodometry_plugin.so"; });
+    if (has_odometry) return;
     odometry_ = setup.topics.publishes(setup.parameters.text("truth"),
                                        messages::kind_of<messages::Odometry>());
   }

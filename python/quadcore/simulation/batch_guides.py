@@ -52,10 +52,10 @@ def make_guides(
     references = _repeat("reference", reference, n)
     made: Dict[Any, Guide] = {}
     guides = []
-    for model, tags, law, wanted in zip(vehicles.models, vehicles.tags, controllers, references):
-        key = id(model), tuple(sorted(tags.items())), id(law), id(wanted)
+    for model, tags, chosen, wanted in zip(vehicles.models, vehicles.tags, controllers, references):
+        key = id(model), tuple(sorted(tags.items())), id(chosen), id(wanted)
         if key not in made:
-            made[key] = _make_guide(model, tags, vehicles.world, engine, dt, law, wanted)
+            made[key] = _make_guide(model, tags, vehicles.world, engine, dt, chosen, wanted)
         guides.append(made[key])
     return guides
 
@@ -101,12 +101,12 @@ def follow(
     """
     pilots = [guide.pilot for guide in guides]
     if all(pilot.is_built_in for pilot in pilots):
-        laws, references = zip(*(pilot.built_in for pilot in pilots))
+        names, references = zip(*(pilot.built_in for pilot in pilots))
         rates, delays = (
             np.array([getattr(pilot, name) for pilot in pilots]) for name in ("rate", "delay")
         )
         tables, rows, *_ = batch._follow(
-            laws, references, rates, delays, SENSED, steps, log_every, list(log)
+            names, references, rates, delays, SENSED, steps, log_every, list(log)
         )
         return [table[: rows[vehicle]] for table, vehicle in zip(tables, log)]
     if len(set(map(id, pilots))) > 1 or not pilots[0].is_vectorized:

@@ -12,10 +12,10 @@ using namespace quadcore::control;
 
 namespace {
 
-/// A rigid body on which a law's demand acts at once.
+/// A rigid body on which a controller's demand acts at once.
 struct Ideal {
   ModelledVehicle model = test::odd_belief(4);
-  std::unique_ptr<ControlLaw> law;
+  std::unique_ptr<WrenchController> controller;
   std::vector<double> memory;
   Odometry now;
   double period = 1e-3;
@@ -23,13 +23,13 @@ struct Ideal {
 
   Ideal(const std::string& name, const Values& given) {
     const ControllerInfo& info = find_controller(name);
-    law = info.make(model, complete(given, info.defaults));
+    controller = info.make(model, complete(given, info.defaults));
     memory.assign(info.memory_size, 0.0);
   }
 
   /// Newton and Euler, by Heun's method; the demand is held.
   void step(const Reference& wanted) {
-    const Demand demand = law->demand(
+    const Demand demand = controller->demand(
         {period, begins, now, wanted, nullptr, last, Vector3d::Zero(), false}, memory.data());
     begins = false;
     last = demand;
@@ -106,7 +106,7 @@ TEST_CASE("roll and pitch of the cascade have the poles of its gains, at any yaw
   }
 }
 
-TEST_CASE("every law brings an odd vehicle that the rotors obey at once to its place") {
+TEST_CASE("every controller brings an odd vehicle that the rotors obey at once to its place") {
   for (const ControllerInfo& info : list_controllers()) {
     // The gains of the firmwares suit their own vehicles.
     if (std::set<std::string>{"pid_thesis", "crazyflie_pid", "mellinger", "px4"}.count(info.name)) {
@@ -126,15 +126,14 @@ TEST_CASE("every law brings an odd vehicle that the rotors obey at once to its p
 
 TEST_CASE("the printed gains of section 6.2 are unstable in x and y, by Routh and Hurwitz") {
   // s^3 + Kd s^2 + Kp s + Ki is stable only if Kd Kp > Ki.
-  const auto default_of_law = [](const std::string& law, const std::string& name) {
-    for (const TagSpec& spec : Controller::table(law)) {
+  const auto gain = [](const std::string& controller, const std::string& name) {
+    for (const TagSpec& spec : Controller::table(controller)) {
       if (spec.name == name) return default_of(spec);
     }
     return std::nan("");
   };
-  const auto margin = [&](const std::string& law) {
-    return default_of_law(law, "kd_xy") * default_of_law(law, "kp_xy") -
-           default_of_law(law, "ki_xy");
+  const auto margin = [&](const std::string& name) {
+    return gain(name, "kd_xy") * gain(name, "kp_xy") - gain(name, "ki_xy");
   };
   CHECK(margin("pid_thesis") == doctest::Approx(-0.5));
   CHECK(margin("pid") > 0);
@@ -200,7 +199,7 @@ TEST_CASE("an optimal gain solves the Riccati equation and is stable") {
   }
 }
 
-TEST_CASE("what is no law is refused with what to write instead") {
+TEST_CASE("an unknown controller is refused with what to write instead") {
   CHECK(test::contains(test::refusal([] { find_controller("geometrical"); }),
                        "controller 'geometrical' does not exist. Did you mean 'geometric'?"));
 }

@@ -98,24 +98,24 @@ TEST_CASE("a hexarotor keeps yaw without one of some rotors, if neighbours turn 
   for (std::size_t gone = 0; gone < 8; ++gone) CHECK(keeps({1, -1, 1, -1, 1, -1, 1, -1}, gone));
 }
 
-TEST_CASE("a rotor that is told to be whole again is commanded as before, a lost one to rest") {
+TEST_CASE("a rotor that is reported as whole again is commanded as before, a lost one to rest") {
   const Actuation actuation(test::odd_belief(6), {});
-  std::vector<double> told(Actuation::state_size(6)), untold = told;
+  std::vector<double> health(Actuation::state_size(6)), plain = health;
   VectorXd speeds(6), same(6);
   const Demand demand{13, {0.1, -0.05, 0.01}};
   const auto command = [&](std::vector<double>& state, VectorXd& into) {
     actuation.command(0.002, demand, state.data(), into.data());
   };
-  actuation.set_remaining(2, 0.3, told.data());
-  actuation.set_remaining(2, 1, told.data());
-  command(told, speeds);
-  command(untold, same);
+  actuation.set_remaining(2, 0.3, health.data());
+  actuation.set_remaining(2, 1, health.data());
+  command(health, speeds);
+  command(plain, same);
   CHECK(speeds == same);
-  actuation.set_remaining(2, 0, told.data());
-  command(told, speeds);
+  actuation.set_remaining(2, 0, health.data());
+  command(health, speeds);
   CHECK(speeds[2] == 0);
-  for (int call = 0; call < 500; ++call) command(told, speeds);  // the others take over
+  for (int call = 0; call < 500; ++call) command(health, speeds);  // the others take over
   CHECK(speeds[2] == 0);
-  CHECK(!Actuation::saturated(told.data()));
-  CHECK(actuation.now(told.data()).exerted.thrust == doctest::Approx(13));
+  CHECK(!Actuation::saturated(health.data()));
+  CHECK(actuation.now(health.data()).exerted.thrust == doctest::Approx(13));
 }

@@ -47,7 +47,7 @@ TEST_CASE("the air is described as the force laws have it, whatever the joints' 
         expected.bottomLeftCorner<3, 3>() += c * place * across;
         expected.bottomRightCorner<3, 3>() -= c * place * across * r;
       }
-      // Flapping answers to turning besides, and hover is told without the rotors' tilt.
+      // Flapping answers to turning besides, and the hover speeds ignore the rotors' tilt.
       const double bar = appendix ? 1e-9 : 2e-3;
       const auto error = (vehicle.air.linear - expected).eval();
       CHECK(error.leftCols<3>().norm() < bar * expected.leftCols<3>().norm());
@@ -78,7 +78,7 @@ TEST_CASE("what a command exerts does not depend on how much slower the rotors t
   CHECK((one.effectiveness - ten.effectiveness).norm() < 1e-12 * one.effectiveness.norm());
 }
 
-TEST_CASE("neighbours turn against each other unless they are told otherwise") {
+TEST_CASE("neighbours turn against each other unless the spins are given") {
   VehicleDescription vehicle = described("eigen", "appendix", "1");
   const auto spins = [&](const std::vector<double>& given) {
     std::vector<double> all;

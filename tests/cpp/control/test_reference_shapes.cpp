@@ -74,7 +74,7 @@ TEST_CASE("every derivative of a reference is that of the one before") {
   }
 }
 
-TEST_CASE("yaw points along the velocity where it is told to") {
+TEST_CASE("yaw points along the velocity with the parameter along") {
   for (const char* name : {"circle", "eight", "spiral"}) {
     const auto shape = make_reference(name, {{"along", 1}, {"yaw", 0.2}});
     for (const double t : {0.1, 0.83, 2.6, 4.4}) {
@@ -139,8 +139,8 @@ TEST_CASE("a series tells the motion it was taken from, its ends included") {
 
 namespace {
 
-/// A motion with no symmetry, told to so many digits.
-Rows told(double rate, int digits, double begin = 0) {
+/// A motion with no symmetry, written with a number of digits.
+Rows write_rows(double rate, int digits, double begin = 0) {
   const int n = static_cast<int>(std::lround(8 * rate)) + 1;
   Rows rows(n, 5);
   const double unit = std::pow(10.0, -digits);
@@ -155,7 +155,7 @@ Rows told(double rate, int digits, double begin = 0) {
 
 }  // namespace
 
-TEST_CASE("a series is flown as the motion, not as the digits in which it is told") {
+TEST_CASE("a series is flown as the motion, not as its digits") {
   struct Telling {
     double rate;
     int digits;
@@ -164,7 +164,7 @@ TEST_CASE("a series is flown as the motion, not as the digits in which it is tol
   for (const Telling& telling : {Telling{100, 6, 2e-6, 0.2}, Telling{1000, 9, 2e-9, 0.05},
                                  Telling{50, 4, 2e-4, 2}, Telling{100, 3, 2e-3, 8}}) {
     CAPTURE(telling.digits);
-    const auto series = make_reference("series", {}, told(telling.rate, telling.digits));
+    const auto series = make_reference("series", {}, write_rows(telling.rate, telling.digits));
     for (double t = 0.5; t < 7.5; t += 0.0317) {
       const Reference r = series->at(t);
       const Vector3d p(2 * std::cos(1.5 * t), 1.4 * std::sin(1.1 * t),
@@ -178,7 +178,7 @@ TEST_CASE("a series is flown as the motion, not as the digits in which it is tol
 }
 
 TEST_CASE("rows with noise are smoothed as far as they are said to lie off") {
-  Rows rows = told(100, 12);
+  Rows rows = write_rows(100, 12);
   test::Draw draw{5};
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
     rows(i, 1) += 1e-3 * std::clamp(draw.number(), -1.0, 1.0);
@@ -191,7 +191,7 @@ TEST_CASE("rows with noise are smoothed as far as they are said to lie off") {
 
 TEST_CASE("the yaw of a series goes on where its numbers jump by a turn") {
   for (const int digits : {6, 14}) {
-    const auto series = make_reference("series", {}, told(100, digits));
+    const auto series = make_reference("series", {}, write_rows(100, digits));
     for (double t = 0.1; t < 8; t += 0.113) {
       CHECK(series->at(t).yaw == doctest::Approx(2.5 + 0.8 * t).epsilon(1e-6));
       CHECK(series->at(t).yaw_rate == doctest::Approx(0.8).epsilon(1e-2));
@@ -199,9 +199,9 @@ TEST_CASE("the yaw of a series goes on where its numbers jump by a turn") {
   }
 }
 
-TEST_CASE("a series begins at once, whenever its first row was told") {
-  const auto early = make_reference("series", {}, told(20, 12)),
-             late = make_reference("series", {}, told(20, 12, 17.5));
+TEST_CASE("a series begins at once, whatever the time of its first row") {
+  const auto early = make_reference("series", {}, write_rows(20, 12)),
+             late = make_reference("series", {}, write_rows(20, 12, 17.5));
   CHECK(late->end() == doctest::Approx(8));
   for (const double t : {0.0, 2.2, 7.9}) {
     CHECK((early->at(t).position - late->at(t).position).norm() < 1e-9);
@@ -209,7 +209,7 @@ TEST_CASE("a series begins at once, whenever its first row was told") {
   }
 }
 
-TEST_CASE("paths through rows have a yaw law where their rows say no yaw") {
+TEST_CASE("paths through rows have a yaw from parameters where their rows have none") {
   const Rows rows = five_waypoints();
   for (const char* name : {"waypoints", "series"}) {
     CAPTURE(name);
@@ -228,8 +228,9 @@ TEST_CASE("paths through rows have a yaw law where their rows say no yaw") {
       CHECK(std::abs(std::remainder(along->at(end).yaw - along->at(inside).yaw, 2 * pi)) < 0.02);
     }
     CHECK(along->at(30).yaw == along->at(10.4).yaw);
-    CHECK(test::contains(test::refusal([&] { make_reference(name, {{"along", 1}}, told(10, 6)); }),
-                         "its rows and 'along' both set the yaw"));
+    CHECK(test::contains(
+        test::refusal([&] { make_reference(name, {{"along", 1}}, write_rows(10, 6)); }),
+        "its rows and 'along' both set the yaw"));
   }
 }
 

@@ -60,10 +60,10 @@ TEST_CASE("a schedule that is asked once a step tells that period and not its ow
   for (const double rate : {100.0, 2000.0}) {
     const Schedule schedule(rate, 0, 1);
     std::vector<double> state(schedule.state_size(), 0.0);
-    double told = 0;
-    const auto ask = [&](double period, double*) { told = period; };
+    double asked_period = 0;
+    const auto ask = [&](double period, double*) { asked_period = period; };
     schedule.update(0, 1e-3, state.data(), ask);
-    CHECK(told == doctest::Approx(rate == 100 ? 0.01 : 0.001));
+    CHECK(asked_period == doctest::Approx(rate == 100 ? 0.01 : 0.001));
   }
 }
 

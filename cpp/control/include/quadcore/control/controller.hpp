@@ -1,7 +1,7 @@
 #pragma once
 
 #include "quadcore/control/actuation.hpp"
-#include "quadcore/control/control_law.hpp"
+#include "quadcore/control/wrench_controller.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
@@ -13,14 +13,14 @@ struct LaneController;
 class Controller {
  public:
   /// Throws InputError for an unknown controller or parameter, or an unsuitable vehicle.
-  Controller(const std::string& law, const VehicleDescription& vehicle, const Values& values,
+  Controller(const std::string& name, const VehicleDescription& vehicle, const Values& values,
              const std::vector<double>& spins = {});
 
   /// Return the parameters of a controller, of the lag compensation and of the model errors.
-  static std::vector<TagSpec> table(const std::string& law);
+  static std::vector<TagSpec> table(const std::string& name);
   /// Return the number of state values of a controller for so many rotors.
-  static std::size_t state_size(const std::string& law, std::size_t rotors) {
-    return Actuation::state_size(rotors) + find_controller(law).memory_size;
+  static std::size_t state_size(const std::string& name, std::size_t rotors) {
+    return Actuation::state_size(rotors) + find_controller(name).memory_size;
   }
 
   /// Return the number of state values of this controller.
@@ -43,7 +43,7 @@ class Controller {
   /// \param period  time between calls [s]
   std::shared_ptr<const LaneController> in_lanes(double period) const;
   /// Return the flat state that command() uses.
-  ControlLaw::Feeds feeds() const { return law_->feeds(); }
+  WrenchController::Feeds feeds() const { return wrench_controller_->feeds(); }
   /// Set the remaining fraction of a rotor's thrust and torque.
   void set_remaining(std::size_t rotor, double left, double* state) const {
     actuation_.set_remaining(rotor, left, state);
@@ -55,16 +55,16 @@ class Controller {
   const ModelledVehicle& model() const { return model_; }
 
  private:
-  Controller(const ControllerInfo& law, const VehicleDescription& vehicle, const Values& values,
+  Controller(const ControllerInfo& info, const VehicleDescription& vehicle, const Values& values,
              const std::vector<double>& spins);
-  static Values complete_values(const std::string& law, const Values& values);
+  static Values complete_values(const std::string& name, const Values& values);
   void follow(double period, const Odometry& now, const Reference& wanted, const FlatState* flat,
               double* state, double* speeds) const;
 
   ModelledVehicle model_;
   Actuation actuation_;
-  std::shared_ptr<const ControlLaw> law_;
-  std::size_t memory_size_;  ///< state values of law_
+  std::shared_ptr<const WrenchController> wrench_controller_;
+  std::size_t memory_size_;  ///< state values of wrench_controller_
 };
 
 }  // namespace control

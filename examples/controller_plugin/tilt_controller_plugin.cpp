@@ -17,9 +17,9 @@ constexpr double rounding = 1e-6;  ///< of a period
 /// Gives roll and pitch priority over yaw (Brescianini, D'Andrea 2018, "Tilt-prioritized
 /// quadrocopter attitude control"): roll and pitch turn the shortest way to the desired thrust, and
 /// a slower loop controls yaw.
-class TiltLawPlugin final : public quadcore::Plugin {
+class TiltControllerPlugin final : public quadcore::Plugin {
  public:
-  explicit TiltLawPlugin(const quadcore::PluginSetup& setup) {
+  explicit TiltControllerPlugin(const quadcore::PluginSetup& setup) {
     const quadcore::Parameters& p = setup.parameters;
     rate_ = p.number("rate");
     kp_ = p.number("kp");
@@ -97,7 +97,7 @@ quadcore::PluginDescriptor describe() {
               T::number("kYawRate", "1/s", "3", "gain of the yaw rate").at_least(0),
           },
           {},
-          quadcore::create<TiltLawPlugin>};
+          quadcore::create<TiltControllerPlugin>};
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include "vehicle_numbers.hpp"
 
 /// \file
-/// Input and demand of a control law as plain numbers or packs, see LawInput. Contains neither
-/// Eigen nor code, so that files compiled for a specific processor can include it.
+/// Input and demand of a control law as plain numbers or packs, see ControllerInput. Contains
+/// neither Eigen nor code, so that files compiled for a specific processor can include it.
 
 namespace quadcore::control {
 
@@ -35,13 +35,13 @@ struct RotorsNumbers {
 };
 
 /// Switches of control laws; each has a part of them.
-struct LawSwitches {
+struct ControllerSwitches {
   bool feed_forward, flat_rates, integral, drag, gyroscopic;
 };
 
 /// Input of a control law.
 template <class T>
-struct LawNumbers {
+struct InputNumbers {
   double period;
   bool begins;
   const MeasuredNumbers<T>& now;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "attitude_law.hpp"
-#include "law_numbers.hpp"
+#include "attitude_formulas.hpp"
+#include "controller_numbers.hpp"
 
 /// \file
 /// The control laws on SE(3) as formulas for numbers or packs. Contains neither Eigen nor code, so
@@ -20,10 +20,10 @@ struct TrackingNumbers {
 
 /// Common parts of the control laws on SE(3).
 template <class T>
-struct TrackingLaw {
-  const LawSwitches& switches;
+struct TrackingFormulas {
+  const ControllerSwitches& switches;
   const TrackingNumbers<T>& gains;
-  const LawNumbers<T>& input;
+  const InputNumbers<T>& input;
 
   /// Return the acceleration that corrects position and velocity errors, in W [m/s^2].
   /// \param integral  memory [m s]
@@ -85,7 +85,7 @@ struct TrackingLaw {
   }
 };
 
-/// Memory of the geometric control law.
+/// Memory of the geometric control formulas.
 template <class T>
 struct GeometricMemory {
   Vec3<T> integral;
@@ -93,10 +93,10 @@ struct GeometricMemory {
 
 /// See Geometric.
 template <class T>
-QUADCORE_LAW DemandNumbers<T> demand_geometrically(const TrackingLaw<T>& law,
+QUADCORE_LAW DemandNumbers<T> demand_geometrically(const TrackingFormulas<T>& formulas,
                                                    GeometricMemory<T>& memory) {
-  const Vec3<T> f_W = law.force_W(law.acceleration(memory.integral));
-  return {dot(f_W, law.z_W()), law.torque(law.angular_acceleration(f_W))};
+  const Vec3<T> f_W = formulas.force_W(formulas.acceleration(memory.integral));
+  return {dot(f_W, formulas.z_W()), formulas.torque(formulas.angular_acceleration(f_W))};
 }
 
 /// Memory of the incremental control law: the integral of the position error, then the filtered
@@ -106,7 +106,7 @@ struct IndiMemory {
   Vec3<T> integral, velocity, rate, force, torque;
 };
 
-/// Numbers of the incremental control law.
+/// Numbers of the incremental control formulas.
 template <class T>
 struct IndiNumbers {
   TrackingNumbers<T> tracking;
@@ -124,17 +124,17 @@ QUADCORE_LAW Vec3<T> filter(T share, double period, const Vec3<T>& x, Vec3<T>& f
 /// See Indi.
 /// \param share  fraction of a change that the filters pass within the period
 template <class T>
-QUADCORE_LAW DemandNumbers<T> demand_incrementally(const TrackingLaw<T>& law, T share,
+QUADCORE_LAW DemandNumbers<T> demand_incrementally(const TrackingFormulas<T>& formulas, T share,
                                                    IndiMemory<T>& memory) {
-  const LawNumbers<T>& input = law.input;
-  const VehicleNumbers<T>& vehicle = law.gains.vehicle;
-  const Vec3<T> z_W = law.z_W();
-  const Vec3<T> a_W = law.acceleration(memory.integral);
+  const InputNumbers<T>& input = formulas.input;
+  const VehicleNumbers<T>& vehicle = formulas.gains.vehicle;
+  const Vec3<T> z_W = formulas.z_W();
+  const Vec3<T> a_W = formulas.acceleration(memory.integral);
   // Start with modelled values, including the accelerations, before the first measurement.
   if (input.begins) {
-    const Vec3<T> f_W = law.force_W(a_W);
-    const Vec3<T> dw_F = law.angular_acceleration(f_W);
-    const DemandNumbers<T> demand{dot(f_W, z_W), law.torque(dw_F)};
+    const Vec3<T> f_W = formulas.force_W(a_W);
+    const Vec3<T> dw_F = formulas.angular_acceleration(f_W);
+    const DemandNumbers<T> demand{dot(f_W, z_W), formulas.torque(dw_F)};
     const T behind = input.period * (1 / share - 1);  // lag of a filter on a ramp
     memory.velocity = input.now.v_WF_W - behind * a_W;
     memory.rate = input.now.w_WF_F - behind * dw_F;
@@ -153,9 +153,9 @@ QUADCORE_LAW DemandNumbers<T> demand_incrementally(const TrackingLaw<T>& law, T 
   // Both accelerations refer to the origin of F; the force already includes the relative
   // acceleration of the centre of mass.
   const Vec3<T> f_W = memory.force + vehicle.mass * (a_W - measured_a_W);
-  const Vec3<T> dw_F = law.angular_acceleration(f_W);
+  const Vec3<T> dw_F = formulas.angular_acceleration(f_W);
   const Vec3<T> incremental_F = memory.torque + vehicle.inertia_Ccm_F * (dw_F - measured_dw_F);
-  return {dot(f_W, z_W), {incremental_F.x, incremental_F.y, law.torque(dw_F).z}};
+  return {dot(f_W, z_W), {incremental_F.x, incremental_F.y, formulas.torque(dw_F).z}};
 }
 
 }  // namespace quadcore::control

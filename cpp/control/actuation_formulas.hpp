@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "law_numbers.hpp"
+#include "controller_numbers.hpp"
 
 /// \file
 /// Modelled rotors as formulas for numbers or packs, see Actuation. Contains neither Eigen nor

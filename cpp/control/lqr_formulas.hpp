@@ -1,7 +1,7 @@
 #pragma once
 
-#include "attitude_law.hpp"
-#include "law_numbers.hpp"
+#include "attitude_formulas.hpp"
+#include "controller_numbers.hpp"
 
 /// \file
 /// The linear-quadratic control law as formulas for numbers or packs. Contains neither Eigen nor
@@ -27,9 +27,9 @@ struct LqrMemory {
 
 /// See Lqr.
 template <class T>
-QUADCORE_LAW DemandNumbers<T> demand_optimally(const LawSwitches& switches,
+QUADCORE_LAW DemandNumbers<T> demand_optimally(const ControllerSwitches& switches,
                                                const LqrNumbers<T>& gains,
-                                               const LawNumbers<T>& input, LqrMemory<T>& memory) {
+                                               const InputNumbers<T>& input, LqrMemory<T>& memory) {
   const MeasuredNumbers<T>& now = input.now;
   const WantedNumbers<T>& wanted = input.wanted;
   const Vec3<T> error_W = wanted.position - now.position;
