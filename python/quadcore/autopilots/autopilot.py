@@ -44,7 +44,7 @@ class Autopilot:
     hold : float, default 0
         Duration of the phase before the flight, s, up to `MAX_HOLD`.
     where : mapping of str to str, default {}
-        ``FILE:LINE: `` of the values in a stack file, by name, for messages.
+        Places of the values in a stack file, ``FILE:LINE:`` and a space, by name, for messages.
 
     Attributes
     ----------
