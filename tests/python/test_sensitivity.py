@@ -7,7 +7,7 @@ import pytest
 
 import quadcore as qc
 from quadcore.studies.sweep.pawn import compute_pawn
-from quadcore.studies.sweep.plots import _leading_axes
+from quadcore.studies.sweep.plots import _draw_surface, _leading_axes
 
 
 @pytest.fixture(scope="module")
@@ -66,3 +66,15 @@ def test_a_model_error_that_rank_correlation_misses_ranks_first():
     assert rows[0]["axis"] == "controller.believed_thrust"
     assert abs(rows[0]["rank"]) < 0.3 and rows[0]["pawn"] > 2 * rows[0]["pawn_noise"]
     assert _leading_axes(rows)[0] == "controller.believed_thrust"  # of the response surface
+
+
+def test_the_surface_of_an_axis_with_a_narrow_range_has_its_label():
+    backend = pytest.importorskip("matplotlib.backends.backend_agg")
+    x, y = np.random.default_rng(0).random((2, 50))
+    columns = {"a": x, "frame.mass": 1 + 2e-4 * (y - 0.5), "rms": x + y}
+    parts = [("", np.arange(50))]
+    figure = _draw_surface(parts, columns, ["a", "frame.mass"], "rms", "rms (m)", "")
+    backend.FigureCanvasAgg(figure).draw()
+    label = figure.axes[0].yaxis.label
+    assert label.get_text() == "frame.mass"
+    assert label.get_window_extent().x0 > 0

@@ -172,7 +172,7 @@ def _draw_surface(
         1,
         len(parts),
         squeeze=False,
-        gridspec_kw={"left": 0.1, "right": 0.95, "top": 0.82, "bottom": 0.2, "wspace": 0.45},
+        gridspec_kw={"left": 0.14, "right": 0.95, "top": 0.82, "bottom": 0.2, "wspace": 0.45},
     )
     for axes, (named, chosen) in zip(grid[0], parts):
         dress(axes)
