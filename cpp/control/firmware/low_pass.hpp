@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "quadcore/plugin/elementary.hpp"
+
 namespace quadcore::control {
 
 /// Memory of a low-pass filter.
@@ -15,7 +17,8 @@ class LowPass {
   /// \param cutoff  frequency [Hz], below half the sampling rate, else the filter passes everything
   /// \param period  [s]
   LowPass(double cutoff, double period) : passes_(cutoff * period >= 0.5) {
-    const double k = std::tan(M_PI * cutoff * period);
+    const elementary::SineCosine half = elementary::sincos(M_PI * cutoff * period);
+    const double k = half.sin / half.cos;
     const double scale = 1 + M_SQRT2 * k + k * k;
     gain_ = k * k / scale;
     a1_ = 2 * (k * k - 1) / scale;

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
+import os
 import select
 import socket
 import time
@@ -20,6 +23,8 @@ PATIENCE = 2.0
 
 _AGAIN = 0.25  # s; without an answer for so long, the question is asked again
 _SETTLE = 0.02  # s; answers to a repeated question that come later are discarded
+_FIRST_PORT, _PORTS = 16384, 16384  # among which free ports are sought
+_asked = itertools.count()  # calls of find_free_port
 
 
 class Exchange:
@@ -157,10 +162,17 @@ def check_free(kind: int, port: int) -> None:
 
 
 def find_free_port(kind: int) -> int:
-    """Return a port of this machine that is free now."""
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind((HOST, 0))
-        return int(probe.getsockname()[1])
+    """Return a port of this machine that is free now.
+
+    The system takes the ports of its own choice from 32768 on. This one is below, so that no
+    connection gets it before the autopilot opens it. Each process begins at another port.
+    """
+    for _ in range(_PORTS):
+        port = _FIRST_PORT + (8 * os.getpid() + next(_asked)) % _PORTS
+        with contextlib.suppress(InputError):
+            check_free(kind, port)
+            return port
+    raise InputError("no port is free. End other autopilots or simulators.")
 
 
 def describe_taken(kind: str, port: int, error: OSError) -> InputError:

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "mesh_file.hpp"
+#include "quadcore/plugin/elementary.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {
@@ -94,8 +95,10 @@ class ColladaReader {
         step.topRightCorner<3, 1>() = Vector3d(n[0], n[1], n[2]);
       } else if (kind == "rotate") {
         const Vector3d axis = Vector3d(n[0], n[1], n[2]).normalized();
-        const double angle = n[3] * std::acos(-1.0) / 180;
-        step.topLeftCorner<3, 3>() = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+        const elementary::SineCosine half = elementary::sincos(n[3] * M_PI / 360);
+        const Vector3d v = half.sin * axis;
+        const Quaterniond turn(half.cos, v.x(), v.y(), v.z());
+        step.topLeftCorner<3, 3>() = turn.toRotationMatrix();
       } else {
         step.topLeftCorner<3, 3>() = Vector3d(n[0], n[1], n[2]).asDiagonal();
       }
