@@ -21,12 +21,12 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .._core import FlightError, InputError
+from .._core import FlightError
 from ..control.vehicle import Vehicle
 from .arming import ArmingWatch
-from .autopilot import Autopilot
 from .exchange import Exchange, find_free_port
 from .program import Program
+from .program_autopilot import ProgramAutopilot, fly_reference
 from .readings import Readings
 from .rotor_map import Place
 from .session import Link, describe_session
@@ -57,7 +57,7 @@ DEFAULTS = {
 """Parameters that the bridge relies on."""
 
 
-class ArduPilot(Autopilot):
+class ArduPilot(ProgramAutopilot):
     """Controller that flies an ArduPilot SITL program (``arducopter``) with the sticks of a radio.
 
     Parameters
@@ -86,18 +86,10 @@ class ArduPilot(Autopilot):
         where: Optional[Mapping[str, str]] = None,
         **others: Any,
     ) -> None:
-        super().__init__(hold=hold, where=where, **others)
-        self._command = [program, *arguments]
-        self._parameters = {**DEFAULTS, **(parameters or {})}
-        self._settings = {"hold": hold, **others}
-        self._program: Optional[Program] = None
-        self._exchange: Optional[Exchange] = None
+        parameters = {**DEFAULTS, **(parameters or {})}
+        super().__init__([program, *arguments], parameters, hold, where, **others)
         self.log["armed"] = math.nan
-        if hold < _ARM:
-            raise InputError(
-                f"{self._where.get('hold', '')}hold is {hold:g}, but ArduPilot arms {_ARM:g} s "
-                "before the flight. Give more."
-            )
+        self._check_hold("ArduPilot", _ARM)
 
     def start(self, vehicle: Vehicle) -> None:
         """Start the program, and wait for its first packet."""
@@ -116,12 +108,9 @@ class ArduPilot(Autopilot):
         self._exchange = Exchange(self._program, 0)
         self._ports["radio"] = find_free_port(socket.SOCK_DGRAM)
         given = {"motors": self._exchange.port, "radio": self._ports["radio"]}
-        command = list(self._command)
-        for name, port in given.items():
-            command = [part.replace(f"{{{name}}}", str(port)) for part in command]
         lines = [f"{name} {value}\n" for name, value in self._parameters.items()]
         (self._program.folder / _PARAMETERS).write_text("".join(lines))
-        self._program.start(command, {})
+        self._program.start(self._fill_in(given), {})
         self._ports["state"] = self._exchange.wait_for_sender(
             lambda reason: self.fail(-self.hold, reason)
         )
@@ -157,23 +146,7 @@ class ArduPilot(Autopilot):
         """Arm before the flight, then follow the reference."""
         if t < 0:
             return Sticks(is_armed=t >= -_ARM)
-        if reference is None:
-            raise InputError("The pilot of an autopilot needs a reference. Add --reference hover.")
-        return self._pilot.fly(state, reference)
-
-    def close(self) -> None:
-        """End the program, and remove its folder."""
-        super().close()
-        if self._exchange is not None:
-            self.summary = f"{self._exchange.summarize()}, {self.describe_speed()}"
-            self._exchange.close()
-            self._exchange = None
-        if self._program is not None:
-            self._program.stop()
-            self._program = None
-
-    def _quote_messages(self) -> str:
-        return "" if self._program is None else self._program.describe_messages()
+        return fly_reference(self._pilot, state, reference)
 
 
 def convert_readings(readings: Readings) -> Dict[str, List[float]]:

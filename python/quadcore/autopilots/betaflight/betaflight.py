@@ -12,9 +12,9 @@ import numpy as np
 from ..._core import FlightError, InputError
 from ...control.vehicle import Vehicle
 from ..arming import ArmingWatch
-from ..autopilot import Autopilot
 from ..exchange import Exchange, check_free, find_free_port
 from ..program import Program
+from ..program_autopilot import ProgramAutopilot, fly_reference
 from ..readings import Readings
 from ..rotor_map import Place
 from ..session import Link, describe_session
@@ -32,7 +32,7 @@ _STILL = (0.0, 0.0, 0.0, 0.0)
 OwnPilot = Callable[[float, Any, Any], Sticks]
 
 
-class Betaflight(Autopilot):
+class Betaflight(ProgramAutopilot):
     """Controller that flies an unmodified Betaflight SITL program.
 
     Parameters
@@ -75,27 +75,19 @@ class Betaflight(Autopilot):
         where: Optional[Mapping[str, str]] = None,
         **others: Any,
     ) -> None:
-        super().__init__(hold=hold, where=where, **others)
-        self._command = [program, *arguments]
-        self._parameters = {**DEFAULTS, **(parameters or {})}
+        parameters = {**DEFAULTS, **(parameters or {})}
+        super().__init__([program, *arguments], parameters, hold, where, **others)
         self._lines = [*COMMANDS, *commands]
         self._own_pilot = pilot
-        self._program: Optional[Program] = None
-        self._exchange: Optional[Exchange] = None
         self._flight_exchange: Optional[Link] = None
         self.log.update(dict.fromkeys(_LOGGED, math.nan))
-        self._settings = {"hold": hold, **others}
         self._pilot: Optional[StickPilot] = None
         self._is_strict = lockstep == "strict"
         if lockstep not in ("strict", "plain"):
             raise InputError(
                 f"{self._where.get('lockstep', '')}lockstep is {lockstep}. Use strict or plain."
             )
-        if hold < _ARM:
-            raise InputError(
-                f"{self._where.get('hold', '')}hold is {hold:g}, but Betaflight arms {_ARM:g} s "
-                "before the flight. Give more."
-            )
+        self._check_hold("Betaflight", _ARM)
 
     def start(self, vehicle: Vehicle) -> None:
         """Write the parameters and start the program."""
@@ -156,24 +148,11 @@ class Betaflight(Autopilot):
             return Sticks(is_armed=True)
         if self._own_pilot is not None:
             return self._own_pilot(t, state, reference)
-        if reference is None:
-            raise InputError("The pilot of an autopilot needs a reference. Add --reference hover.")
-        return self._pilot.fly(state, reference)
+        return fly_reference(self._pilot, state, reference)
 
     def ask(self, tick: Callable[[], object]) -> Msp:
         """Connect to Betaflight's MSP port."""
         return Msp(self.ports.msp, tick)
-
-    def close(self) -> None:
-        """End the program, and remove its folder."""
-        super().close()
-        if self._exchange is not None:
-            self.summary = f"{self._exchange.summarize()}, {self.describe_speed()}"
-            self._exchange.close()
-            self._exchange = None
-        if self._program is not None:
-            self._program.stop()
-            self._program = None
 
     def _start_strict(self, program: Program) -> None:
         """Start the program with a clock that quadcore controls, and with ports of its own."""
@@ -195,9 +174,7 @@ class Betaflight(Autopilot):
             for port in (self.ports.state, self.ports.radio):
                 check_free(socket.SOCK_DGRAM, port)
             check_free(socket.SOCK_STREAM, self.ports.msp)
-        command = list(self._command)
-        for name, port in self.ports._asdict().items():
-            command = [part.replace(f"{{{name}}}", str(port)) for part in command]
+        command = self._fill_in(self.ports._asdict())
         self._write_parameters(command, {})
         program.start(command, {})
 
@@ -213,9 +190,6 @@ class Betaflight(Autopilot):
             )
         program = Path(self._command[0])
         return describe_session("betaflight", program, self._settings, self._parameters)
-
-    def _quote_messages(self) -> str:
-        return "" if self._program is None else self._program.describe_messages()
 
 
 def _find_free_ports() -> Ports:
