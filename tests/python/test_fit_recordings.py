@@ -137,6 +137,34 @@ def test_commands_out_of_range_are_all_left_out():
     assert ((left >= 0) & (left <= 1)).all()
 
 
+def test_rotor_speeds_that_do_not_exist_are_left_out():
+    time = np.arange(0, 4, 0.01)
+    speeds = 1800 + 300 * np.sin(time[:, None] + np.arange(4))
+    speeds[:100] = 250  # idle on the ground
+    speeds[200, 2], speeds[300, 0] = 65535, -40000
+    cleaned, removals = clean_recording(
+        Recording("flight", {"rotors": Series(time, speeds)}, None, {"rotors": 3})
+    )
+    assert [tuple(r) for r in removals] == [
+        ("rotors", "incomplete", 3),
+        ("rotors", "out of range", 2),
+    ]
+    assert np.isin(time, cleaned.quantities["rotors"].time).sum() == len(time) - 2
+
+
+def test_saturated_samples_of_an_imu_are_left_out():
+    time = np.arange(0, 4, 0.01)
+    rates = np.radians(2400) * np.sin(2 * time[:, None] + np.arange(3))
+    clipped = np.clip(rates, -np.radians(1998), np.radians(1998))
+    saturated = (np.abs(rates) > np.radians(1998)).any(axis=1)
+    quiet = np.round(np.random.default_rng(0).normal(0, 0.6, (400, 3)))  # few steps of the ADC
+    given = {"rates": Series(time, clipped), "acceleration": Series(time, 0.05 * quiet)}
+    cleaned, removals = clean_recording(Recording("flight", given, None))
+    left_out = {r.topic: r.samples for r in removals if r.reason == "saturated"}
+    assert left_out == {"rates": saturated.sum()}
+    assert not np.isin(time[saturated], cleaned.quantities["rates"].time).any()
+
+
 def test_local_polynomials_are_exact_for_cubics_and_noise_is_estimated():
     time = np.sort(np.random.default_rng(0).uniform(0, 2, 200))
     values = np.column_stack([time**3 - time, 2 * time**2])

@@ -221,7 +221,9 @@ orientation: {columns: [w, a, b, c], order: wxyz}
 def test_a_mapping_converts_units_and_frames(tmp_path):
     (tmp_path / "m.yaml").write_text(MAPPING + "body: FRD\n")
     file = save(tmp_path / "a.csv", TABLE.encode())
-    given = read_recording(file, tmp_path / "m.yaml").quantities
+    recording = read_recording(file, tmp_path / "m.yaml")
+    given = recording.quantities
+    assert recording.incomplete == {"position": 1, "orientation": 0}
     assert given["position"].time == pytest.approx([0, 0.02])  # a row has no z
     assert given["position"].values[0] == pytest.approx([0.02, 0.01, -0.03])
     log = qc.Log.of_file(file, tmp_path / "m.yaml")
@@ -240,6 +242,7 @@ def test_a_mapping_converts_units_and_frames(tmp_path):
         (("position", "positoin"), "Did you mean 'position'"),
         (("world: NED", "world: ECEF"), "world is 'ECEF'. Use one of ENU, NED."),
         (("{columns: [x", "columns: [x"), ":4: this is not YAML"),
+        (("unit: cm", "unit: cm, range: [0, 1]"), "position: 'range' is unknown"),
     ],
 )
 def test_a_wrong_mapping_is_refused(tmp_path, change, message):

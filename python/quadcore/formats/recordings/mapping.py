@@ -28,7 +28,9 @@ _SETPOINT = "setpoint"
 _ORDERS = {"xyzw": 4, "wxyz": 4, "roll_pitch_yaw": 3}
 _FOLDER = Path(__file__).parent / "mappings"
 _TOP = ("format", "time", "world", "body", "rotor_order", "spin", *QUANTITIES)
-_ENTRY = ("columns", "unit", "signs", "order", "axes", "range")
+_ENTRY = ("columns", "unit", "signs")
+_ENTRY_OF = {"orientation": ("order",), "velocity": ("axes",), "commands": ("range",)}
+"""Further keys of some quantities."""
 
 FORMATS = ("csv", "crazyflie", "ulog", "blackbox", "bag")
 
@@ -165,7 +167,7 @@ def _check_mapping(where: str, content: Mapping[str, Any]) -> LogMapping:
 
 
 def _check_entry(where: str, name: str, given: Any) -> Entry:
-    _check_keys(where, given, _ENTRY)
+    _check_keys(where, given, (*_ENTRY, *_ENTRY_OF.get(name, ())))
     columns = given.get("columns")
     columns = [columns] if isinstance(columns, str) else columns
     if not isinstance(columns, list) or not columns:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Dict, NamedTuple, Optional
+from types import MappingProxyType
+from typing import Dict, Mapping, NamedTuple, Optional
 
 import numpy as np
 
@@ -26,11 +27,14 @@ class Recording(NamedTuple):
         ``setpoint`` (m) and ``setpoint_yaw`` (rad) of a position controller, as ``position``.
     spin : ndarray (rotors,), optional
         Direction of rotation of each rotor, 1 or -1.
+    incomplete : dict of str to int
+        Number of rows of each quantity in which only some columns are numbers; they are left out.
     """
 
     where: str
     quantities: Dict[str, Series]
     spin: Optional[np.ndarray]
+    incomplete: Mapping[str, int] = MappingProxyType({})
 
 
 def map_columns(columns: Columns, mapping: LogMapping, is_shipped: bool) -> Recording:
@@ -52,14 +56,17 @@ def map_columns(columns: Columns, mapping: LogMapping, is_shipped: bool) -> Reco
     """
     found: Dict[str, Series] = {}
     entries: Dict[str, Entry] = {}
+    incomplete: Dict[str, int] = {}
     for name, group in mapping.entries.items():
         chosen = next((e for e in group if all(c in columns for c in e.columns)), None)
         if chosen is None and is_shipped:
             continue
         entries[name] = chosen or group[0]
-        found[name] = _convert(name, columns.stack(entries[name].columns), entries[name], mapping)
-    found = {name: _drop_empty(series) for name, series in found.items()}
-    found = {name: series for name, series in found.items() if len(series.time)}
+        series = columns.stack(entries[name].columns)
+        incomplete[name] = _count_incomplete(series)
+        series = _drop_empty(_convert(name, series, entries[name], mapping))
+        if len(series.time):
+            found[name] = series
     if not found:
         raise InputError(f"{columns.where}: none of the columns of {mapping.where} has values.")
     if "velocity" in found and entries["velocity"].axes == "body":
@@ -69,7 +76,7 @@ def map_columns(columns: Columns, mapping: LogMapping, is_shipped: bool) -> Reco
         _check_time(columns.where, name, series)
         found[name] = Series((series.time - begin), series.values)
     spin = None if mapping.spin is None else np.array(mapping.spin)
-    return Recording(columns.where, found, spin)
+    return Recording(columns.where, found, spin, incomplete)
 
 
 def _convert(name: str, series: Series, entry: Entry, mapping: LogMapping) -> Series:
@@ -113,6 +120,12 @@ def _to_quaternions(values: np.ndarray, order: str, mapping: LogMapping) -> np.n
         x, y, z, w = q.T
         q = np.column_stack([w, z, -y, -x])
     return q
+
+
+def _count_incomplete(series: Series) -> int:
+    """Count the rows with numbers and without; a row without any number is no sample."""
+    known = np.isfinite(series.values)
+    return int(np.sum(known.any(axis=1) & ~(known.all(axis=1) & np.isfinite(series.time))))
 
 
 def _drop_empty(series: Series) -> Series:

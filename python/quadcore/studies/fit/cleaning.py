@@ -19,6 +19,16 @@ _REACH = 0.05  # s, of the polynomials that predict a pose
 _NEIGHBOURS = 11
 """Samples among which one is removed at a time, for a glitch spoils the polynomials around it."""
 _ROUNDS = 20
+_FASTEST = 5.0
+"""Maximum rotor speed relative to a high quantile: thrust of at least 25 times the weight."""
+_HIGH = 90  # percent; less than the rest of the samples may be impossible
+_FULL_SCALES = {
+    "rates": np.radians([250, 500, 1000, 2000, 4000]),
+    "acceleration": 9.80665 * np.array([2, 3, 4, 6, 8, 12, 16, 24, 32]),
+}
+"""Full scales of common IMUs, rad/s and m/s^2."""
+_OFFSET = 0.03
+"""Distance of a saturated sample from the full scale, relative to it: offset and gain."""
 _GAP = 3.0
 """Multiple of the usual distance of samples from which a gap counts."""
 
@@ -40,12 +50,16 @@ class Removal(NamedTuple):
 
 
 def clean_recording(recording: Recording) -> Tuple[Recording, List[Removal]]:
-    """Leave out repeated samples, impossible values and glitches, in this order.
+    """Leave out repeated samples, impossible and saturated values, and glitches, in this order.
+
+    Rows in which only some columns are numbers are already left out, and only counted.
 
     The order matters: a repeated sample looks like a standstill, and the difference of two glitches
     like a motion.
     """
-    removals: List[Removal] = []
+    removals = [
+        Removal(name, "incomplete", count) for name, count in recording.incomplete.items() if count
+    ]
     quantities: Dict[str, Series] = {}
     for name, series in recording.quantities.items():
         for reason, find in _CHECKS.items():
@@ -75,13 +89,30 @@ def _find_repeated(name: str, series: Series) -> np.ndarray:
 
 
 def _find_impossible(name: str, series: Series) -> np.ndarray:
-    """Find commands out of their range, and voltages that no battery has."""
+    """Find commands out of their range, and speeds and voltages that do not exist."""
     wrong = np.zeros(len(series.time), bool)
     if name == "commands":
         wrong[:] = ((series.values < -1e-6) | (series.values > 1 + 1e-6)).any(axis=1)
+    elif name == "rotors" and len(wrong):
+        speeds = np.abs(series.values)
+        wrong[:] = (speeds > _FASTEST * np.percentile(speeds, _HIGH)).any(axis=1)
     elif name == "battery":
         wrong[:] = series.values[:, 0] <= 0
     return wrong
+
+
+def _find_saturated(name: str, series: Series) -> np.ndarray:
+    """Find samples of an IMU that stay at the maximum of an axis, near a full scale."""
+    saturated = np.zeros(len(series.time), bool)
+    if name not in _FULL_SCALES or len(saturated) < 2:
+        return saturated
+    sizes = np.abs(series.values)
+    scales = _FULL_SCALES[name][:, None]
+    is_full = (np.abs(sizes.max(axis=0) - scales) < _OFFSET * scales).any(axis=0)
+    stays = (sizes == sizes.max(axis=0))[1:] & (np.diff(series.values, axis=0) == 0) & is_full
+    saturated[1:] |= stays.any(axis=1)
+    saturated[:-1] |= stays.any(axis=1)
+    return saturated
 
 
 def _find_glitches(name: str, series: Series) -> np.ndarray:
@@ -110,5 +141,6 @@ def _find_glitches(name: str, series: Series) -> np.ndarray:
 _CHECKS = {
     "repeated sample": _find_repeated,
     "out of range": _find_impossible,
+    "saturated": _find_saturated,
     "glitch": _find_glitches,
 }
