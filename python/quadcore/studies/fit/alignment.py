@@ -14,6 +14,12 @@ from .smoothing import fit_locally
 _STEP = 2e-3  # s
 _MOST = 0.15  # s; larger lags are not searched
 _REACH = 0.04  # s, of the polynomials that differentiate
+_BLOCK = 0.5
+"""Duration of a block of samples with errors that depend on each other, s."""
+_CERTAIN = 0.999
+"""Confidence from which the axes of a pose and an IMU differ."""
+_SMALLEST = np.radians(0.3)
+"""Rotation below which the errors of lags and smoothing count, rad."""
 _GRAVITY = np.array([0, 0, 9.81])
 
 
@@ -51,11 +57,13 @@ def find_mount(recording: Recording) -> Optional[np.ndarray]:
     Specific force and rates, as the IMU measures them and as they follow from the pose, are
     directions in both axes. The rotation between them solves Wahba's problem (W. Kabsch, Acta
     Crystallographica A32, 1976), with the force in units of gravity and the rates in their RMS.
+    Hotelling's test decides whether it differs from zero. Its covariance comes from a sandwich
+    estimator with blocks of 0.5 s as clusters, because the errors of samples depend on each other.
 
     Returns
     -------
     ndarray (4,) or None
-        Quaternion x, y, z, w, or None without IMU or pose.
+        Quaternion x, y, z, w, or None without IMU or pose, or if the rotation is not significant.
     """
     from scipy.spatial.transform import Rotation
 
@@ -66,7 +74,7 @@ def find_mount(recording: Recording) -> Optional[np.ndarray]:
         (_compute_force(_differentiate(given["position"]), given["orientation"]), "acceleration"),
         (compute_rates(given["orientation"]), "rates"),
     )
-    ours, theirs = [], []
+    ours, theirs, blocks = [], [], []
     for reference, name in pairs:
         topic = given[name]
         inside = (reference.time > topic.time[0]) & (reference.time < topic.time[-1])
@@ -77,8 +85,43 @@ def find_mount(recording: Recording) -> Optional[np.ndarray]:
         size = 9.81 if name == "acceleration" else np.sqrt(np.mean(np.sum(other**2, axis=1)))
         ours.append(one[kept] / size)
         theirs.append(other[kept] / size)
-    turn, _ = Rotation.align_vectors(np.vstack(ours), np.vstack(theirs))
-    return np.asarray(turn.as_quat())
+        blocks.append(reference.time[inside][kept] // _BLOCK)
+    a, b, block = np.vstack(ours), np.vstack(theirs), np.concatenate(blocks)
+    turn, _ = Rotation.align_vectors(a, b)
+    is_turned = _is_significant(turn.as_rotvec(), a, turn.apply(b), block)
+    return np.asarray(turn.as_quat()) if is_turned else None
+
+
+def _is_significant(
+    turn: np.ndarray, ours: np.ndarray, turned: np.ndarray, block: np.ndarray
+) -> bool:
+    """Test whether the rotation vector between two sets of directions differs from zero.
+
+    Parameters
+    ----------
+    turn : ndarray (3,)
+        Rotation vector that aligns the sets best.
+    ours, turned : ndarray (n, 3)
+        Vectors of the first set, and of the second after the rotation.
+    block : ndarray (n,)
+        Number of the block of each vector.
+    """
+    from scipy.stats import f
+
+    if np.linalg.norm(turn) < _SMALLEST:
+        return False
+    numbers, place = np.unique(block, return_inverse=True)
+    count = len(numbers)
+    if count <= 3:
+        return False
+    # A small further rotation p moves `turned` by p x turned; its gradient is turned x error.
+    normal = np.sum(turned**2) * np.eye(3) - turned.T @ turned
+    scores = np.zeros((count, 3))
+    np.add.at(scores, place, np.cross(turned, ours - turned))
+    scale = count / (count - 1)
+    size = turn @ normal @ np.linalg.solve(scale * scores.T @ scores, normal @ turn)
+    limit = 3 * (count - 1) / (count - 3) * f.ppf(_CERTAIN, 3, count - 3)
+    return bool(size > limit)
 
 
 def turn_pose(recording: Recording, mount: np.ndarray) -> Recording:
