@@ -17,6 +17,7 @@ import quadcore as qc
 from quadcore import _core
 from quadcore.model import resources
 from quadcore.model.description import load_description
+from quadcore.model.overrides import LINK_VALUES
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tags.md"
@@ -34,9 +35,9 @@ An unknown, repeated or missing tag is an error, and so is a value that is out o
 finite. The message has the file, the line, the plugin and the nearest known tag.
 
 `--set PLUGIN.TAG=VALUE` (Python: `parameters={"PLUGIN.TAG": value}`) overrides the URDF. PLUGIN is
-the `name` attribute of the plugin tag. `--set` also takes `LINK.mass`, `LINK.ixx`, `ixy`, `ixz`,
-`iyy`, `iyz` and `izz`, the values of the link's `<inertial>` (kg, kg m^2), and `xacro.ARG`, an
-argument of a xacro model. A name that fits two of these is an error.
+the `name` attribute of the plugin tag. `--set` also takes `LINK.NAME`, a [value of a
+link](#links), and `xacro.ARG`, an argument of a xacro model. A name that fits two of these is an
+error.
 """
 
 LOG = {
@@ -125,6 +126,20 @@ def write_reference_section() -> str:
         + table(("tag", "of a", "unit", "default", "range", "meaning"), felt)
         + "\nThese tags have no effect, as in Gazebo, within the given range:\n\n"
         + table(("tag", "of a", "range", "why"), unfelt)
+    )
+
+
+def write_link_section() -> str:
+    """Tabulate the values of links."""
+    rows = (
+        (f"`LINK.{name}`", value.unit, f"`<{value.element}>` `{value.attribute}`", value.meaning)
+        for name, value in LINK_VALUES.items()
+    )
+    return (
+        "\n## Links\n\n"
+        "Each link with an `<inertial>` has these values. The moments and products of inertia\n"
+        "are those about the centre of mass. Its coordinates are in the axes of the link:\n\n"
+        + table(("name", "unit", "in the URDF", "meaning"), rows)
     )
 
 
@@ -250,6 +265,7 @@ def make_page() -> str:
             INTRODUCTION,
             *write_plugin_sections(simulation, other_motors),
             *write_rotors_sections(),
+            write_link_section(),
             write_reference_section(),
             write_world_section(),
             write_ignored_section(),

@@ -260,6 +260,22 @@ def test_measured_rotor_speeds_without_commands_give_back_the_truth(tmp_path):
     assert np.all(found.trims[:, 0] < 5e-3)
 
 
+def test_the_centre_of_mass_is_found_beside_a_constant_torque(tmp_path):
+    """Both turn the vehicle; only the first grows with the thrust."""
+    true = {"frame.com_x": 2e-3, "frame.com_y": -1.5e-3}
+    parameters = {name: repr(value) for name, value in true.items()}
+    parameters["drone_plugin.constantTorqueY"] = "1e-4"
+    table = fly("eight", parameters, duration=10).table.copy()
+    random = np.random.default_rng(0)
+    for columns, noise in ((slice(1, 4), 5e-4), (slice(11, 14), 0.05), (slice(14, 18), 5)):
+        table[:, columns] += random.normal(0, noise, table[:, columns].shape)
+    qc.Log(table).to_csv(tmp_path / "flight.csv")
+    found = fit_recordings("crazyflie", [tmp_path / "flight.csv"], free=list(true)).found
+    for name, value in true.items():
+        assert abs(found.values[name] - value) < 3 * found.deviations[name] < 5e-4
+    assert found.trims[0, 3] == pytest.approx(1e-4, abs=3e-5)
+
+
 @pytest.mark.parametrize(("reference", "known"), [("eight", True), ("circle:radius=0.5", False)])
 def test_noisy_rotor_speeds_do_not_bias_moments_of_inertia(tmp_path, reference, known):
     """Noise attenuates the effect of the torques; a steady circle shows nothing else."""

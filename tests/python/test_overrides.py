@@ -44,6 +44,26 @@ def test_values_of_links_are_those_of_a_file_that_has_them(model, tmp_path):
     assert np.array_equal(one.model.links[2].inertia, same.model.links[2].inertia)
 
 
+@pytest.mark.parametrize("origin", ["", '<origin rpy="0 0 0"/>', "<origin xyz='0.1 -2e-1\t0.3'/>"])
+def test_a_coordinate_of_the_centre_of_mass_is_that_of_a_file_that_has_it(tmp_path, origin):
+    text = vehicle(com=(0.01, 0, 0.02), air=AIR, motor=MOTOR)
+    begin = text.index("<origin", text.index("<inertial>"))
+    end = text.index(">", begin) + 1
+    (tmp_path / "a.urdf").write_text(text[:begin] + origin + text[end:])
+    z = "0.3" if "xyz" in origin else "0"
+    (tmp_path / "b.urdf").write_text(text[:begin] + f'<origin xyz="0.4 -0.05 {z}"/>' + text[end:])
+    given = {"frame.com_x": 0.4, "frame.com_y": "-0.05"}
+    one = qc.Simulation(tmp_path / "a.urdf", parameters=given)
+    same = qc.Simulation(tmp_path / "b.urdf")
+    assert np.array_equal(one.center_of_mass, same.center_of_mass)
+    assert np.array_equal(one.inertia, same.inertia)
+    batch = qc.BatchSimulation(
+        tmp_path / "a.urdf", n=2, parameters={"frame.com_x": np.array([0.0, 0.4])}
+    )
+    batch.step(np.tile([300, -300], (2, 2)), 100)
+    assert not np.array_equal(batch.state.position[0], batch.state.position[1])
+
+
 def test_an_argument_of_xacro_is_one_more_parameter(xacro_model):
     one = qc.Simulation(xacro_model, parameters={"xacro.heavy": 2})
     assert one.mass == pytest.approx(2.04)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence
 from .._core import InputError, engines, parse_number
 from ..formats.recordings import is_recording
 from ..model.description import read_world
+from ..model.overrides import LINK_NAMES
 from ..simulation.engines import STUDY_ENGINE
 from ..studies.fit.record import CHANNELS
 from ..studies.flight_folder import DOCUMENT
@@ -70,7 +71,7 @@ def register(commands: Any) -> None:
         "--free",
         metavar="A,B",
         type=parse.names,
-        help="parameters to identify: PLUGIN.TAG, LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG, and "
+        help=f"parameters to identify: PLUGIN.TAG, {LINK_NAMES}, xacro.ARG, and "
         "for recordings inputs or rotors.factor (default for recordings: inertia, motors, drag, "
         "damping, inputs); start values come from the model, --set and --xacro",
     )

@@ -11,6 +11,7 @@ from .._core import engines
 from ..control import controllers, references
 from ..formats.recordings import list_mappings
 from ..model import resources
+from ..model.overrides import LINK_NAMES
 from ..report.drawing import FORMATS
 from ..simulation.engines import ENGINE, list_engines
 from ..simulation.scenarios import NONE
@@ -274,7 +275,7 @@ def add_vary(parser: argparse.ArgumentParser, more: str = "", values: str = "") 
         action="append",
         default=[],
         help=f"values of a tag: {_VALUES}{values}. PLUGIN.TAG,PLUGIN.TAG=... gives several tags "
-        "the same value. Other axes: LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG, world"
+        f"the same value. Other axes: {LINK_NAMES}, xacro.ARG, world"
         f"{more}; repeatable, which makes a grid",
     )
 

@@ -1,9 +1,9 @@
-"""Overrides that are not tags of plugins: xacro.ARG, LINK.mass, LINK.ixx and the like."""
+"""Overrides that are not tags of plugins: xacro.ARG, and numbers of links such as LINK.mass."""
 
 from __future__ import annotations
 
 import re
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Container, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 from xml.parsers import expat
 
 from .. import _core
@@ -13,10 +13,51 @@ from ..support.parameters import suggest
 
 XACRO = "xacro"
 _LINK = "a link"
+_NUMBER = re.compile(rb"[^\s\"']+")
 
-# Element and attribute of a link's <inertial> that each name stands for.
-_PLACES = {"mass": ("mass", "value")}
-_PLACES.update({name: ("inertia", name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")})
+
+class LinkValue(NamedTuple):
+    """Number in the ``<inertial>`` of a link.
+
+    Attributes
+    ----------
+    element, attribute : str
+        Element and its attribute.
+    place : int
+        Place among the numbers of the attribute.
+    unit, meaning : str
+        For tables.
+    is_signed : bool
+        Whether it may be negative.
+    """
+
+    element: str
+    attribute: str
+    place: int
+    unit: str
+    meaning: str
+    is_signed: bool
+
+
+LINK_VALUES = {"mass": LinkValue("mass", "value", 0, "kg", "mass", False)}
+"""Numbers that ``LINK.NAME`` sets, by NAME."""
+LINK_VALUES.update(
+    (f"i{a}{b}", LinkValue("inertia", f"i{a}{b}", 0, "kg m^2", f"{kind} of inertia", a != b))
+    for a, b, kind in (
+        ("x", "x", "moment"),
+        ("x", "y", "product"),
+        ("x", "z", "product"),
+        ("y", "y", "moment"),
+        ("y", "z", "product"),
+        ("z", "z", "moment"),
+    )
+)
+LINK_VALUES.update(
+    (f"com_{axis}", LinkValue("origin", "xyz", place, "m", f"centre of mass, {axis}", True))
+    for place, axis in enumerate("xyz")
+)
+LINK_NAMES = "LINK.mass, LINK.ixx ... LINK.izz, LINK.com_x ... LINK.com_z"
+"""Names of `LINK_VALUES` in help texts."""
 
 
 def split_xacro_arguments(
@@ -95,22 +136,22 @@ def _check_link_names(model: Model, parameters: Iterable[str]) -> None:
             and not _is_special(key)
             and _describe_names(model.document)[owner] == [_LINK]
         ):
-            near, known = suggest(name, list(_PLACES)), ", ".join(_PLACES)
+            near, known = suggest(name, list(LINK_VALUES)), ", ".join(LINK_VALUES)
             raise InputError(
                 f"set {key}: link '{owner}' has no value '{name}'.{near} Set one of {known}."
             )
 
 
 def list_link_values(document: Document) -> Dict[str, str]:
-    """Return the text of every LINK.NAME in a document."""
-    found = _find_attributes(document.text.encode())
+    """Return the text of every LINK.NAME in a document; the default of an origin is 0."""
+    found = _find_attributes(_add_origins(document.text.encode()))
     return {key: attribute.text for key, attribute in found.items()}
 
 
 def _is_special(key: str) -> bool:
     """Return whether a key can be something else than a tag of a plugin."""
     owner, _, name = key.rpartition(".")
-    return owner == XACRO or name in _PLACES
+    return owner == XACRO or name in LINK_VALUES
 
 
 def _describe_names(document: Document) -> Dict[str, List[str]]:
@@ -131,7 +172,10 @@ def _describe_names(document: Document) -> Dict[str, List[str]]:
 
 def _change_values(model: Model, values: Mapping[str, str]) -> Model:
     document = model.document
-    places = _find_attributes(document.text.encode())
+    text = document.text.encode()
+    if any(LINK_VALUES[key.rpartition(".")[2]].element == "origin" for key in values):
+        text = _add_origins(text, [key.rpartition(".")[0] for key in values])
+    places = _find_attributes(text)
     edits = []
     for key, value in values.items():
         if _core.parse_number(value) is None:
@@ -139,7 +183,6 @@ def _change_values(model: Model, values: Mapping[str, str]) -> Model:
         if key not in places:
             raise InputError(f"set {key}: the link has no such <inertial>. Write one.")
         edits.append((*places[key].span, value.encode()))
-    text = document.text.encode()
     for begin, end, new in sorted(edits, reverse=True):
         text = text[:begin] + new + text[end:]
     changed = Document(document.name, text.decode(), document.lines)
@@ -172,15 +215,58 @@ def _find_attributes(text: bytes) -> Dict[str, _Attribute]:
         if path[1:-1] != ["link", "inertial"]:
             return
         begin = parser.CurrentByteIndex
-        for name, (element, attribute) in _PLACES.items():
+        for name, (element, attribute, place, *_) in LINK_VALUES.items():
             if tag == element and attribute in attributes:
                 pattern = rb"\s" + attribute.encode() + rb"\s*=\s*(?:\"([^\"]*)\"|'([^']*)')"
                 match = re.compile(pattern).search(text, begin)
                 assert match is not None
                 span = match.span(1 if match[1] is not None else 2)
-                found[f"{link}.{name}"] = _Attribute(span, attributes[attribute])
+                number = list(_NUMBER.finditer(text, *span))[place]
+                found[f"{link}.{name}"] = _Attribute(number.span(), number[0].decode())
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: path.pop()
     parser.Parse(text, True)
     return found
+
+
+def _add_origins(text: bytes, links: Optional[Container[str]] = None) -> bytes:
+    """Write the default origin of the ``<inertial>`` of links that have none.
+
+    Parameters
+    ----------
+    text
+        Text of a document.
+    links
+        Names of the links (default: all).
+    """
+    parser = expat.ParserCreate()
+    path: List[str] = []
+    additions: Dict[int, bytes] = {}
+    link, mass, has_origin = "", -1, False
+
+    def is_wanted() -> bool:
+        return links is None or link in links
+
+    def start(tag: str, attributes: Mapping[str, str]) -> None:
+        nonlocal link, mass, has_origin
+        path.append(tag)
+        if path[1:] == ["link"]:
+            link, mass, has_origin = attributes.get("name", ""), -1, False
+        elif path[1:] == ["link", "inertial", "mass"]:
+            mass = parser.CurrentByteIndex
+        elif path[1:] == ["link", "inertial", "origin"]:
+            has_origin = True
+            if "xyz" not in attributes and is_wanted():
+                additions[parser.CurrentByteIndex + len("<origin")] = b' xyz="0 0 0"'
+
+    def end(tag: str) -> None:
+        if path[1:] == ["link"] and mass >= 0 and not has_origin and is_wanted():
+            additions[mass] = b'<origin xyz="0 0 0"/>'
+        path.pop()
+
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.Parse(text, True)
+    for at in sorted(additions, reverse=True):
+        text = text[:at] + additions[at] + text[at:]
+    return text

@@ -48,8 +48,8 @@ class Simulation(_core.Simulation):
     seed : int, default 0
         Seed of all noise. The same seed gives a bit-identical simulation.
     parameters : mapping of str to number, str, bool, path or sequence of those, optional
-        Values by "PLUGIN.TAG", which override the URDF. "LINK.mass", "LINK.ixx" ... "LINK.izz"
-        and "xacro.ARG" are accepted as well.
+        Values by "PLUGIN.TAG", which override the URDF. "LINK.mass", "LINK.ixx" ... "LINK.izz",
+        "LINK.com_x" ... "LINK.com_z" and "xacro.ARG" are accepted as well.
     xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
     spawn : sequence of 3 or 6 numbers, default (0, 0, 10)

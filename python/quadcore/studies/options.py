@@ -29,6 +29,7 @@ from typing import (
 
 from .._core import InputError
 from ..model import resources
+from ..model.overrides import LINK_NAMES
 from ..simulation.engines import STUDY_ENGINE
 from ..simulation.scenarios import NONE
 from ..support import arguments, parse
@@ -96,7 +97,7 @@ class Options:
 
     parameters: Optional[Mapping[str, Value]] = field(default=None, metadata=_describe(
         VEHICLE, "set", "PLUGIN.TAG=VALUE",
-        "value of a plugin tag, or of LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG",
+        f"value of a plugin tag, or of {LINK_NAMES}, xacro.ARG",
         parse.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         arguments.OPTIONS["parameters"], repeats=True,
     ))  # fmt: skip

@@ -7,7 +7,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from ..._core import FlightError, InputError, parse_number
-from ...model.overrides import list_link_values
+from ...model.overrides import LINK_VALUES, list_link_values
 from ...support import arguments
 from ...support.parameters import suggest
 from .fitted_model import FittedModel
@@ -19,6 +19,9 @@ _START_STEPS = (1e-5, 1e-5, 1e-5, 1e-4, 1e-2)
 
 _FINEST = {"position": 1e-6, "attitude": 1e-6, "velocity": 1e-6, "rates": 1e-6, "rotors": 1e-4}
 """Minimum noise of each channel in m, rad, s: derivatives are finite differences."""
+
+_CENTRE = 1e-2
+"""Minimum typical size of a coordinate of the centre of mass, m."""
 
 _FAR = 1e6
 """Residual of a failed flight."""
@@ -53,12 +56,14 @@ class Parameter:
         plugins, model = fitted.simulation.plugins, fitted.model
         tags = {f"{p.name}.{tag.name}": tag for p in plugins for tag in p.parameters}
         links = list_link_values(model.document)
+        self.is_signed = False
         if name in fitted.arguments:
             text, self.unit = fitted.arguments[name], ""
         elif name in tags:
             text, self.unit = tags[name].value, tags[name].unit
         elif name in links:
-            text, self.unit = links[name], "kg" if name.endswith(".mass") else "kg m^2"
+            of_link = LINK_VALUES[name.rpartition(".")[2]]
+            text, self.unit, self.is_signed = links[name], of_link.unit, of_link.is_signed
         else:
             known = [*tags, *links, *fitted.arguments]
             raise InputError(
@@ -74,7 +79,7 @@ class Parameter:
                 f"bound {name}: the start value {value:g} is not within {low:g} and {high:g}"
             )
         self.name, self.start, self.bounds = name, value, (low, high)
-        self.size = abs(value) or 1e-2
+        self.size = max(abs(value), _CENTRE) if self.unit == "m" else abs(value) or 1e-2
 
 
 def check_free_names(free: Sequence[str]) -> List[str]:
@@ -95,7 +100,7 @@ def make_parameter(
     if bounds is not None:
         return Parameter(name, fitted, bounds)
     made = Parameter(name, fitted)
-    if made.start >= 0 and not name.endswith((".ixy", ".ixz", ".iyz")):
+    if made.start >= 0 and not made.is_signed:
         made.bounds = (0.0, np.inf)
     return made
 
