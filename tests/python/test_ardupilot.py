@@ -135,5 +135,5 @@ def test_a_session_is_repeated_without_the_program(tmp_path):
 
 
 def test_the_hold_covers_the_arming(tmp_path):
-    with pytest.raises(qc.InputError, match="yaml:3: hold is 2, but ArduPilot arms 3 s before"):
+    with pytest.raises(qc.InputError, match="yaml:3: hold is 2, but ArduPilot needs at least 3 s"):
         read_autopilot(write_stack(tmp_path, hold=2))

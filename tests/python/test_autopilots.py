@@ -136,7 +136,7 @@ def test_a_curve_by_name_needs_a_maximum_speed():
         ("autopilot: betaflight\nprogram: sh\nhald: 3\n", ":3: a stack file has no 'hald'. Did"),
         ("autopilot: betaflight\nprogram: /no/such\n", ":2: program '/no/such' does not exist"),
         ("autopilot: betaflight\nprogram: sh\nhold: long\n", ":3: hold is not a number"),
-        ("autopilot: betaflight\nprogram: sh\nhold: 1\n", ":3: hold is 1, but Betaflight arms"),
+        ("autopilot: betaflight\nprogram: sh\nhold: 1\n", ":3: hold is 1, but Betaflight needs"),
         ("autopilot: betaflight\nprogram: sh\nrotors: x\n", ":3: rotors is not a list"),
         ("autopilot: betaflight\nprogram: sh\nmotor_curve: x\n", ":3: motor_curve is 'x'. Give"),
         ("autopilot: betaflight\nprogram: sh\nmotor_curve: [1]\n", ":3: motor_curve needs pairs"),

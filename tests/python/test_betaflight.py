@@ -14,6 +14,7 @@ from processes import QUADCORE, run_command, run_refused
 import quadcore as qc
 from quadcore.autopilots import Betaflight, Readings, Sticks, read_autopilot
 from quadcore.autopilots.betaflight import frames, packets
+from quadcore.autopilots.earth import Location
 from quadcore.support.rotation import compose_roll_pitch_yaw, to_matrix
 
 
@@ -57,7 +58,7 @@ def test_betaflight_reads_the_rates_forces_and_attitude_of_the_vehicle(angles):
     velocity, position = np.array([3.0, -1.0, 0.5]), np.array([30.0, 50.0, 7.0])
     first = np.array([10.0, -20.0, 5.0])
     readings = Readings(1.0, position, velocity, np.array(orientation), rates, force)
-    fields = frames.convert_readings(readings, first, frames.Place(60.0, 10.0, 100.0))
+    fields = frames.convert_readings(readings, first, Location(60.0, 10.0, 100.0))
     gyro, accelerometer, attitude = read_as_betaflight(fields)
     assert gyro == pytest.approx(rates) and accelerometer == pytest.approx(force)
     to_north_west_up = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]])
@@ -65,7 +66,7 @@ def test_betaflight_reads_the_rates_forces_and_attitude_of_the_vehicle(angles):
     assert fields[10:13] == pytest.approx(velocity)
     # Betaflight mirrors the place about that of the first packet.
     at_first = frames.convert_readings(
-        readings._replace(position=first), first, frames.Place(60.0, 10.0, 100.0)
+        readings._replace(position=first), first, Location(60.0, 10.0, 100.0)
     )
     longitude, latitude = 2 * np.array(at_first[13:15]) - np.array(fields[13:15])
     radius = 6378137.0

@@ -25,6 +25,7 @@ PACKAGES = {
         "Autopilot",
         "Betaflight",
         "Crazyflie",
+        "PX4",
         "Readings",
         "Sticks",
         "read_autopilot",

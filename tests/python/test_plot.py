@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.report import log_plots, plots
+from quadcore.report.autopilot_plot import draw_autopilot, has_autopilot
 from quadcore.report.drawing import Drawing
 from quadcore.studies.compare import plots as overlaid
 
@@ -125,6 +126,28 @@ def test_each_slow_rotor_has_a_panel_with_its_speed_times_the_slowdown():
     (beside,) = panels[1].child_axes
     assert np.allclose(beside._functions[0](np.array([47.1])), 471)
     assert beside.get_ylabel() == r"$\times$ slowdown (rad/s)"
+
+
+def test_what_an_autopilot_knew_is_drawn_as_errors_and_bands():
+    table = np.zeros((5, 18))
+    table[:, 0], table[:, 1], table[:, 7] = range(5), [0, 1, 2, 3, 4], 1
+    known = {"armed": [np.nan, 1, 1, 0, 0], "mode": [np.nan, 6, 6, 6, 4]}
+    known["estimate_x"] = [np.nan, 1.1, 2.2, 3.0, 3.9]
+    still = ("estimate_y", "estimate_z", "estimate_roll", "estimate_pitch")
+    known.update({name: [np.nan, 0, 0, 0, 0] for name in still})
+    known["estimate_yaw"] = [np.nan, 0, 0, 0, np.radians(350)]
+    topics = {"controller": {name: np.array(values, float) for name, values in known.items()}}
+    log = qc.Log(table, {}, topics=topics)
+    assert has_autopilot(log) and not has_autopilot(qc.Log(table, {}))
+    position, angles, bands = draw_autopilot(log, "").axes
+    assert np.allclose(position.lines[0].get_ydata()[1:], [0.1, 0.2, 0, -0.1])
+    assert np.allclose(angles.lines[2].get_ydata()[1:], [0, 0, 0, -10])
+    assert [text.get_text().strip() for text in bands.texts] == [
+        "armed",
+        "not armed",
+        "mode 6",
+        "mode 4",
+    ]
 
 
 def test_flights_over_each_other_tell_commands_and_what_they_are_compared_with(monkeypatch):

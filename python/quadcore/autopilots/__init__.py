@@ -8,11 +8,13 @@ from .ardupilot import ArduPilot
 from .autopilot import Autopilot
 from .betaflight.betaflight import Betaflight
 from .crazyflie import Crazyflie
+from .px4.px4 import PX4
 from .readings import Readings
 from .stacks import read_autopilot
 from .sticks import Sticks
 
 __all__ = [
+    "PX4",
     "ArduPilot",
     "Autopilot",
     "Betaflight",

@@ -19,11 +19,10 @@ import struct
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
-import numpy as np
-
 from .._core import FlightError
 from ..control.vehicle import Vehicle
 from .arming import ArmingWatch
+from .axes import turn_body_vector, turn_orientation, turn_world_vector
 from .exchange import Exchange, find_free_port
 from .program import Program
 from .program_autopilot import ProgramAutopilot, fly_reference
@@ -158,15 +157,12 @@ def convert_readings(readings: Readings) -> Dict[str, List[float]]:
         ``gyro`` (rad/s) and ``accel_body`` (m/s^2) in axes forward, right, down; ``position`` (m)
         and ``velocity`` (m/s) in axes north, east, down; ``quaternion`` w, x, y, z between these.
     """
-    x, y, z, w = readings.orientation.tolist()
-    half = math.sqrt(0.5)
     return {
-        "gyro": _flip(readings.angular_velocity),
-        "accel_body": _flip(readings.specific_force),
-        "position": _swap(readings.position),
-        "velocity": _swap(readings.linear_velocity),
-        # (i + j) q i / sqrt(2): half turns about north-east and about forward
-        "quaternion": [half * (w + z), half * (x + y), half * (x - y), half * (w - z)],
+        "gyro": turn_body_vector(readings.angular_velocity),
+        "accel_body": turn_body_vector(readings.specific_force),
+        "position": turn_world_vector(readings.position),
+        "velocity": turn_world_vector(readings.linear_velocity),
+        "quaternion": turn_orientation(readings.orientation),
     }
 
 
@@ -194,15 +190,3 @@ def read_servos(packet: bytes) -> Tuple[Optional[Sequence[float]], int, str]:
     if magic != _MAGIC:
         return None, 0, f"a packet of servos begins with {magic} instead of {_MAGIC}"
     return [min(max((pulse - _LOW) / _SPAN, 0.0), 1.0) for pulse in pulses], count, ""
-
-
-def _flip(vector: np.ndarray) -> List[float]:
-    """Convert a vector from axes forward, left, up to forward, right, down."""
-    forward, left, up = vector.tolist()
-    return [forward, -left, -up]
-
-
-def _swap(vector: np.ndarray) -> List[float]:
-    """Convert a vector from axes east, north, up to north, east, down."""
-    east, north, up = vector.tolist()
-    return [north, east, -up]

@@ -10,16 +10,11 @@ import socket
 import time
 from typing import Callable, List
 
-import numpy as np
-
 from .._core import InputError
-from ..support.warning import warn
 from .program import Program
+from .waiting import Waiting, describe_durations
 
 HOST = "127.0.0.1"
-
-PATIENCE = 2.0
-"""Time without an answer after which a warning says that quadcore waits, s."""
 
 _AGAIN = 0.25  # s; without an answer for so long, the question is asked again
 _SETTLE = 0.02  # s; answers to a repeated question that come later are discarded
@@ -86,10 +81,10 @@ class Exchange:
             Makes the error if the program ends.
         """
         began = asked = time.perf_counter()
-        repeated, has_warned = False, False
+        repeated, waiting = False, Waiting(self._program, fail)
         self._socket.sendto(packet, (HOST, port))
         while not self._poll.poll(_AGAIN * 1000):
-            has_warned = self._look(began, has_warned, fail)
+            waiting.look()
             now = time.perf_counter()
             if now - asked >= _AGAIN:
                 self._socket.sendto(packet, (HOST, port))
@@ -103,9 +98,9 @@ class Exchange:
 
     def wait_for_sender(self, fail: Callable[[str], Exception]) -> int:
         """Wait for a first packet of the program, and return the port from which it was sent."""
-        began, has_warned = time.perf_counter(), False
+        waiting = Waiting(self._program, fail)
         while not self._poll.poll(_AGAIN * 1000):
-            has_warned = self._look(began, has_warned, fail)
+            waiting.look()
         return int(self._socket.recvfrom(65536)[1][1])
 
     def discard(self) -> None:
@@ -115,30 +110,11 @@ class Exchange:
 
     def summarize(self) -> str:
         """Describe the answers in one line."""
-        if not self.durations:
-            return "no answers"
-        median, slow = np.quantile(self.durations, [0.5, 0.99]) * 1e6
-        return (
-            f"{len(self.durations)} answers, median {median:.0f} us, 99 % within {slow:.0f} us, "
-            f"{self.repeated} questions repeated"
-        )
+        return f"{describe_durations(self.durations)}, {self.repeated} questions repeated"
 
     def close(self) -> None:
         """Close the socket."""
         self._socket.close()
-
-    def _look(self, began: float, has_warned: bool, fail: Callable[[str], Exception]) -> bool:
-        """Fail if the program has ended, warn once if it is silent, and return whether it was."""
-        self._program.read_messages()
-        if self._program.has_ended():
-            raise fail(self._program.describe_end())
-        if time.perf_counter() - began <= PATIENCE or has_warned:
-            return has_warned
-        warn(
-            f"The autopilot has not answered for {PATIENCE:g} s. quadcore waits for it. "
-            f"{self._program.describe_messages()}"
-        )
-        return True
 
 
 def check_free(kind: int, port: int) -> None:

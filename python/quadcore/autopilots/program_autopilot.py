@@ -1,4 +1,4 @@
-"""Autopilots that are programs of their own, which answer over UDP."""
+"""Autopilots that are programs of their own, which answer over a network."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from .._core import InputError
 from .autopilot import Autopilot
-from .exchange import Exchange
 from .program import Program
 from .sticks import StickPilot, Sticks
 
@@ -41,7 +40,7 @@ class ProgramAutopilot(Autopilot):
         self._parameters = dict(parameters)
         self._settings: Dict[str, Any] = {"hold": hold, **others}
         self._program: Optional[Program] = None
-        self._exchange: Optional[Exchange] = None
+        self._exchange: Any = None  # connection with `Link`, summarize() and close()
 
     def close(self) -> None:
         """End the program, and remove its folder."""
@@ -54,11 +53,11 @@ class ProgramAutopilot(Autopilot):
             self._program.stop()
             self._program = None
 
-    def _check_hold(self, name: str, arming: float) -> None:
-        if self.hold < arming:
+    def _check_hold(self, name: str, shortest: float) -> None:
+        if self.hold < shortest:
             raise InputError(
-                f"{self._where.get('hold', '')}hold is {self.hold:g}, but {name} arms {arming:g} s "
-                "before the flight. Give more."
+                f"{self._where.get('hold', '')}hold is {self.hold:g}, but {name} needs at least "
+                f"{shortest:g} s before the flight. Give more."
             )
 
     def _fill_in(self, ports: Mapping[str, int]) -> List[str]:

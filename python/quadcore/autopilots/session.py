@@ -1,8 +1,8 @@
 """Recorded sessions: the answers of an autopilot in a flight, and digests of what it was asked.
 
 A session file is compressed with gzip. It has a line of JSON and one record for each answer. A
-record contains the CRC-32 of all packets since the last answer, the length of the answer, and the
-answer.
+record contains the CRC-32 of all packets since the last answer, and the answer in pieces. Each
+piece begins with its length; one of 255 bytes is followed by another.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from ..support.input_files import LARGEST, open_file
 from ..support.output_files import atomic_write, printable_name
 
 _VERSION = 1
-_RECORD = struct.Struct("<IB")
+_DIGEST = struct.Struct("<I")
+_PIECE = 255  # bytes
 
 Fail = Callable[[str], Exception]
 
@@ -63,7 +64,7 @@ class Recorder:
         """Ask, as `Link.ask`."""
         answer = self._link.ask(packet, port, fail)
         digest = zlib.crc32(packet, self._digest)
-        self._records.append(_RECORD.pack(digest, len(answer)) + answer)
+        self._records.append(_DIGEST.pack(digest) + _join(answer))
         self._digest = 0
         return answer
 
@@ -173,12 +174,24 @@ def describe_session(
     }
 
 
+def _join(answer: bytes) -> bytes:
+    """Return the pieces of an answer."""
+    pieces = [answer[at : at + _PIECE] for at in range(0, len(answer) + 1, _PIECE)]
+    return b"".join(bytes([len(piece)]) + piece for piece in pieces)
+
+
 def _split(content: bytes) -> Iterator[Tuple[int, bytes]]:
+    """Yield the digest and the answer of each record."""
     at = 0
     while at < len(content):
-        digest, size = _RECORD.unpack_from(content, at)
-        at += _RECORD.size
-        if at + size > len(content):
-            raise ValueError("a record is cut")
-        yield digest, content[at : at + size]
-        at += size
+        (digest,) = _DIGEST.unpack_from(content, at)
+        at += _DIGEST.size
+        answer, size = b"", _PIECE
+        while size == _PIECE:
+            size = content[at]
+            at += 1
+            if at + size > len(content):
+                raise ValueError("a record is cut")
+            answer += content[at : at + size]
+            at += size
+        yield digest, answer

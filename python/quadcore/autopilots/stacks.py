@@ -13,6 +13,7 @@ from .autopilot import Autopilot
 from .betaflight.betaflight import Betaflight
 from .crazyflie import Crazyflie
 from .motor_curve import read_curve
+from .px4.px4 import PX4
 from .session import Session
 from .stack_file import StackFile, read_stack_file
 
@@ -45,6 +46,9 @@ STACKS: Dict[str, Stack] = {
     ),
     "crazyflie": Stack(
         "Crazyflie firmware in this process, Mellinger's controller", Crazyflie, True, ()
+    ),
+    "px4": Stack(
+        "PX4 SITL over TCP, offboard mode, with simulated sensors", PX4, False, ("arguments",)
     ),
 }
 """Stacks by their names in stack files."""

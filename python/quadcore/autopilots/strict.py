@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Callable, Dict, Tuple
 
 from .._core import InputError, plugin_folders
-from ..support.warning import warn
-from .exchange import PATIENCE, Exchange
+from .exchange import Exchange
 from .program import Program
+from .waiting import Waiting
 
 _COMMAND = struct.Struct("<qq")  # Command of cpp/lockstep/preload.cpp
 _LIMIT = struct.pack("ll", 0, 100_000)  # timeval; s, us
@@ -19,6 +19,7 @@ _LONGEST = 65536  # bytes
 _START = 10 * 10**9  # ns; kStart of cpp/lockstep/preload.cpp
 _WAIT = 50_000  # ns
 _WAITS = 400
+_ADVICE = "If it is linked statically, use lockstep: plain in the stack file."
 _LOOK = 256  # ticks between two looks at the messages of the program
 
 
@@ -128,22 +129,16 @@ class StrictExchange(Exchange):
 
     def _wait(self, fail: Callable[[str], Exception]) -> bytes:
         """Wait until the program stands, and return its latest outputs; fails only if it ends."""
-        began, has_warned = time.perf_counter(), False
+        waiting = Waiting(self._program, fail, _ADVICE)
         while True:
             try:
                 event = self._control.recv(_LONGEST)
                 break
             except BlockingIOError:
-                self._program.read_messages()
+                waiting.look()
             except OSError:
                 event = b""
                 break
-            if time.perf_counter() - began > PATIENCE and not has_warned:
-                warn(
-                    f"The autopilot has not answered for {PATIENCE:g} s. quadcore waits for it. If "
-                    "it is linked statically, use lockstep: plain in the stack file."
-                )
-                has_warned = True
         if not event:
             raise fail(self._program.describe_end())
         return event[1:]

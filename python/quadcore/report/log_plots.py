@@ -9,6 +9,7 @@ import numpy as np
 
 from ..support.output_files import make_folder
 from ..support.rotation import unwrap_angles
+from .autopilot_plot import draw_autopilot, has_autopilot
 from .colours import PALETTE
 from .drawing import Drawing, save_drawings
 from .plots import (
@@ -60,6 +61,8 @@ def draw(log: Trajectory, directory: Path) -> dict[str, Drawing]:
         del plots["wrenches"]
     if "error" in log.topics:
         plots["error"] = _draw_error
+    if has_autopilot(log):
+        plots["autopilot"] = _draw_autopilot
     drawings = {}
     for name, draw_plot in plots.items():
         drawings[name] = finish(draw_plot(log))
@@ -93,6 +96,10 @@ def _draw_error(log: Trajectory) -> Figure:
     error = np.column_stack([error, np.linalg.norm(error, axis=1)])
     _plot_components(grid[:, 0], log.time, error, (*_PLACES, "norm (m)"))
     return figure
+
+
+def _draw_autopilot(log: Trajectory) -> Figure:
+    return draw_autopilot(log, _make_title(log, "Autopilot: estimate minus truth, mode and arming"))
 
 
 def _reference_position(log: Trajectory) -> Any:

@@ -12,6 +12,7 @@ import numpy as np
 from ..._core import FlightError, InputError
 from ...control.vehicle import Vehicle
 from ..arming import ArmingWatch
+from ..earth import Location
 from ..exchange import Exchange, check_free, find_free_port
 from ..program import Program
 from ..program_autopilot import ProgramAutopilot, fly_reference
@@ -127,7 +128,7 @@ class Betaflight(ProgramAutopilot):
         if sticks is not self._sticks:
             self._sticks = sticks
             exchange.send(pack_radio(time, sticks), self.ports.radio, fail)
-        fields = frames.convert_readings(readings, self._first, frames.Place())
+        fields = frames.convert_readings(readings, self._first, Location())
         answer = exchange.ask(pack_state(time, fields), self.ports.state, fail)
         if not answer and self._is_strict and readings.time < 0:  # it is still starting
             return _STILL

@@ -15,29 +15,19 @@ The functions below are the inverse of these rules.
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple, Tuple
+from typing import Tuple
 
 import numpy as np
 
+from ..earth import Location
 from ..readings import Readings
 
-_METRES_PER_DEGREE = 111319.49  # at the equator, 2 pi 6378137 m / 360
 _PRESSURE = 101325.0  # Pa; the default build computes it from the altitude
 
 
-class Place(NamedTuple):
-    """Place on Earth of the world's origin."""
-
-    latitude: float = 47.3977
-    """deg"""
-    longitude: float = 8.5456
-    """deg"""
-    altitude: float = 488.0
-    """m above the sea"""
-
-
-def convert_readings(readings: Readings, first: np.ndarray, place: Place) -> Tuple[float, ...]:
+def convert_readings(
+    readings: Readings, first: np.ndarray, location: Location
+) -> Tuple[float, ...]:
     """Return the fields of Betaflight's packet of state, without its time.
 
     Parameters
@@ -46,8 +36,8 @@ def convert_readings(readings: Readings, first: np.ndarray, place: Place) -> Tup
         Readings of the sensors.
     first : ndarray (3,)
         Position in the first packet, m.
-    place : Place
-        Place of the world's origin.
+    location : Location
+        Location of the world's origin.
 
     Returns
     -------
@@ -60,14 +50,16 @@ def convert_readings(readings: Readings, first: np.ndarray, place: Place) -> Tup
     x, y, z, w = readings.orientation.tolist()
     east, north, up = readings.position.tolist()
     first_east, first_north = float(first[0]), float(first[1])
-    per_east = 1 / (_METRES_PER_DEGREE * math.cos(math.radians(place.latitude)))
+    latitude, longitude, altitude = location.locate(
+        2 * first_east - east, 2 * first_north - north, up
+    )
     return (
         *(wx, -wy, wz),
         *(-ax, -ay, -az),
         *(-z, -y, -x, -w),  # Rz(180 deg) q = (-z, -y, x, w), then y and z change sign
         *readings.linear_velocity.tolist(),
-        place.longitude + (2 * first_east - east) * per_east,
-        place.latitude + (2 * first_north - north) / _METRES_PER_DEGREE,
-        place.altitude + up,
+        longitude,
+        latitude,
+        altitude,
         _PRESSURE,
     )

@@ -1,0 +1,1 @@
+"""Bridge to PX4's SITL program."""
