@@ -1,15 +1,17 @@
 # A build lists the objects of its targets in the folder "objects" of its build folder. Another build,
 # configured with QUADCORE_OBJECTS_OF=<that build folder>, links them instead of compiling them again.
-# Both must have the same sources and options. A static core takes only the lanes from a shared one.
+# Both must have the same sources and options. A static core has its own table of plugins; all its other
+# objects are those of a shared core.
 
 # quadcore_list_objects(VARIABLE TARGET) stores the objects that stand for TARGET in VARIABLE.
 function(quadcore_list_objects variable target)
-  if(QUADCORE_OBJECTS_OF AND (BUILD_SHARED_LIBS OR target MATCHES "_lanes[1248]$"))
-    file(STRINGS ${QUADCORE_OBJECTS_OF}/objects/${target} objects)
+  string(REGEX REPLACE "_objects$" "" name ${target})  # a plugin's, which is a module in a shared build
+  if(QUADCORE_OBJECTS_OF AND (BUILD_SHARED_LIBS OR NOT name STREQUAL quadcore_built_in_plugins))
+    file(STRINGS ${QUADCORE_OBJECTS_OF}/objects/${name} objects)
     set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
   else()
     set(objects $<FILTER:$<TARGET_OBJECTS:${target}>,EXCLUDE,[.]gch>)  # no precompiled header
-    file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/objects/${target} CONTENT "$<JOIN:${objects},\n>\n")
+    file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/objects/${name} CONTENT "$<JOIN:${objects},\n>\n")
   endif()
   set(${variable} ${objects} PARENT_SCOPE)
 endfunction()

@@ -3,9 +3,9 @@
 #include <map>
 #include <string>
 
-#include "quadcore/plugin.hpp"
-
 namespace quadcore {
+
+struct PluginModule;
 
 /// The plugins linked into a static core, by the file names of their modules; empty in a shared
 /// core. The build generates this table.
