@@ -260,6 +260,59 @@ def test_measured_rotor_speeds_without_commands_give_back_the_truth(tmp_path):
     assert np.all(found.trims[:, 0] < 5e-3)
 
 
+@pytest.fixture(scope="module")
+def late_rotors(tmp_path_factory):
+    """Flight whose rotor speeds are logged 20 ms late."""
+    table = fly("eight", {"frame.ixx": "1.6e-5"}, duration=5).table
+    late = table[2:].copy()
+    late[:, 14:] = table[:-2, 14:]
+    late[:, 0] -= late[0, 0]
+    path = tmp_path_factory.mktemp("late") / "flight.csv"
+    qc.Log(late).to_csv(path)
+    return path
+
+
+@pytest.mark.parametrize("names", [[], ["inputs.delay"]])
+def test_the_delay_of_the_inputs_is_free(late_rotors, names):
+    given = {"inputs.delay": "0.01"} if names else {}
+    found = fit_recordings(
+        "crazyflie", [late_rotors], free=["frame.ixx", *names], parameters=given
+    ).found
+    assert found.trims[0, 0] == pytest.approx(-0.02, abs=5e-4)
+    assert found.values["frame.ixx"] == pytest.approx(1.6e-5, rel=0.01)
+
+
+def test_a_given_delay_is_fixed_in_fit_and_prediction(late_rotors, tmp_path):
+    fitted = tmp_path / "fitted.urdf"
+    done = run_command(
+        "fit", "crazyflie", "--log", late_rotors, "--log", late_rotors, "--free", "frame.ixx",
+        "--set", "inputs.delay=-0.015", "-o", fitted,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"inputs.delay +-0.015 +-0.015 +fixed +s", done.stdout)
+    assert "flight.csv: commands delayed by -15 ms" in done.stdout
+    assert "delay: -0.015\n" in (tmp_path / "fitted.inputs.yaml").read_text()
+    errors = {}
+    for delay in ("", "-0.02"):
+        given = ("--set", f"inputs.delay={delay}") if delay else ()
+        run_command("predict", fitted, "--log", late_rotors, "--out", tmp_path / "p", *given)
+        row = (tmp_path / "p/errors.csv").read_text().splitlines()[2]
+        errors[delay] = float(row.split(",")[5])
+    assert errors["-0.02"] < 0.7 * errors[""]
+
+
+@pytest.mark.parametrize(
+    "value, message",
+    [
+        ("inputs.delai=0.01", "Did you mean 'inputs.delay'"),
+        ("inputs.delay=1", "'1' is no number from -0.12 to 0.12"),
+        ("inputs.speed=fast", "'fast' is no number from 0 to inf"),
+    ],
+)
+def test_a_wrong_value_of_the_inputs_is_refused(value, message, tmp_path):
+    assert message in run_refused(*FIT, "--set", value, "-o", tmp_path / "a.urdf")
+
+
 def test_the_centre_of_mass_is_found_beside_a_constant_torque(tmp_path):
     """Both turn the vehicle; only the first grows with the thrust."""
     true = {"frame.com_x": 2e-3, "frame.com_y": -1.5e-3}

@@ -76,12 +76,14 @@ def predict(arguments: argparse.Namespace) -> None:
 
 def _predict(arguments: argparse.Namespace) -> None:
     from ..studies.fit.input_file import find_inputs
+    from ..studies.fit.inputs import split_inputs
     from ..studies.fit.output import write_prediction
     from ..studies.fit.recorded import predict_recordings
     from .flight_tables import show_flights, show_judgement, show_replays
 
     shared = reading.read_model_arguments(arguments)
-    plan = FlightPlan.of(**shared, world=arguments.world)
+    _, of_model = split_inputs(shared["parameters"])
+    plan = FlightPlan.of(**{**shared, "parameters": of_model}, world=arguments.world)
     judgement, flights, replays = predict_recordings(
         shared.pop("model"),
         arguments.log,

@@ -10,7 +10,7 @@ from ..._core import FlightError
 from ...model.overrides import list_link_values
 from .coordinates import Coordinates
 from .fitted_model import FittedModel
-from .inputs import INPUT_BOUNDS, INPUTS, guess_speed
+from .inputs import DELAY, INPUT_BOUNDS, INPUTS, MAP, guess_inputs
 from .instruments import Half, compute_deviations, estimate
 from .predictor import Predictor
 from .prepared import PreparedFlight, smooth_rotors, split_samples
@@ -26,8 +26,6 @@ _PRIOR, _TORQUE_PRIOR = 3.0, 1e3
 """Standard deviations of weak priors: coordinates have sizes near 1; 10 rad/s^2 for torques."""
 _FAR = 30.0
 """Weighted error of a prediction that failed."""
-_LONGEST = 0.12
-"""Maximum delay, s. Measured rotor speeds may be late, and have negative delays."""
 _DELAY_SIZE = 0.01  # s
 Progress = Callable[[int, int], None]
 
@@ -205,8 +203,9 @@ class Search:
         high[: self.parameters] = self.coordinates.high
         delays = slice(self.parameters, size, len(self.trim_sizes))
         has_rotors = [flight.rotors is not None for flight in self.predictor.windows.flights]
-        low[delays] = np.where(has_rotors, -_LONGEST, 0) / self.trim_sizes[0]
-        high[delays] = _LONGEST / self.trim_sizes[0]
+        earliest, latest = INPUT_BOUNDS[DELAY]
+        low[delays] = np.where(has_rotors, earliest, 0) / self.trim_sizes[0]
+        high[delays] = latest / self.trim_sizes[0]
         return low, high
 
 
@@ -215,6 +214,8 @@ def fit_flights(
     parameters: Sequence[Parameter],
     free_inputs: Sequence[str],
     flights: Sequence[PreparedFlight],
+    given: Mapping[str, float],
+    limits: Mapping[str, Tuple[float, float]],
     progress: Optional[Progress] = None,
 ) -> FlightFit:
     """Fit parameters to flights.
@@ -226,9 +227,14 @@ def fit_flights(
     parameters
         Free parameters of the model.
     free_inputs
-        Free parameters of `INPUTS`.
+        Names of `INPUTS` that are free.
     flights
         Prepared flights.
+    given
+        Start values of `INPUTS`, or fixed values of those that are not free. Without a given delay,
+        the delay is free.
+    limits
+        Bounds of `MAP` that differ from `INPUT_BOUNDS`.
 
     Raises
     ------
@@ -238,23 +244,27 @@ def fit_flights(
     windows = make_windows(flights)
     predictor = Predictor(fitted, windows)
     weight = 9.81 * fitted.simulation.mass
-    begin = guess_speed(windows.flights, predictor.rotors, weight)
-    names = [p.name for p in parameters] + list(INPUTS)
-    start = np.array([p.start for p in parameters] + list(begin.values()))
+    begin = guess_inputs(windows.flights, predictor.rotors, weight, given)
+    names = [p.name for p in parameters] + list(MAP)
+    start = np.array([p.start for p in parameters] + [begin[name] for name in MAP])
     sizes = np.array([p.size for p in parameters] + [begin["inputs.speed"] or 1.0, 1.0, 1.0])
-    limits = np.array([p.bounds for p in parameters] + [INPUT_BOUNDS[name] for name in INPUTS])
+    bounds = {**INPUT_BOUNDS, **limits}
+    ranges = np.array([p.bounds for p in parameters] + [bounds[name] for name in MAP])
     links = list_link_values(fitted.model.document)
     products = {name: float(text) for name, text in links.items() if name[-4:] in _PRODUCTS}
-    coordinates = Coordinates(names, start, sizes, limits, products)
+    coordinates = Coordinates(names, start, sizes, ranges, products)
     search = Search(predictor, coordinates, {})
     trims = np.zeros((len(flights), len(predictor.trim)))
-    trims[:, 1] = 1
+    trims[:, 0], trims[:, 1] = given.get(DELAY, 0.0), 1
     x = np.concatenate([coordinates.encode(start), (trims / search.trim_sizes).ravel()])
     if (np.abs(search.compute(x)) >= _FAR).all():
         raise FlightError("every prediction with the start values fails. Give other start values.")
     free = np.ones(len(x), bool)
     for k, name in enumerate(names):
-        free[k] = name not in INPUTS or name in free_inputs
+        free[k] = name not in MAP or name in free_inputs
+    fixed = {DELAY: given[DELAY]} if DELAY in given and DELAY not in free_inputs else {}
+    if fixed:
+        _fix_delay(search, free)
     _fix_speed(search, free, [has and i > 0 for i, has in enumerate(_list_scaled(windows))])
     halves, begin_x = [Half(search, search)], x
     least = search.find(x, free, progress)
@@ -268,14 +278,21 @@ def fit_flights(
         x = best
         deviations = compute_deviations(halves, begin_x, x, free)
     found, trims = search.split(x)
-    values = coordinates.name(found)
+    values = {**coordinates.name(found), **fixed}
+    deviations.update(dict.fromkeys(fixed, 0.0))
     units = {p.name: p.unit for p in parameters}
     units.update(INPUTS)
-    return FlightFit(values, dict(zip(names, start.tolist())), deviations, units, trims, windows)
+    first = {**dict(zip(names, start.tolist())), **fixed}
+    return FlightFit(values, first, deviations, units, trims, windows)
 
 
 def calibrate_trims(predictor: Predictor, values: Dict[str, float]) -> np.ndarray:
-    """Find delay and constant torque of each flight from the first windows of `predictor`.
+    """Find delay and constant torque of each flight from the windows of `predictor`.
+
+    Parameters
+    ----------
+    values
+        Values of the model and of `INPUTS`. If they contain a delay, it is fixed.
 
     Returns
     -------
@@ -284,11 +301,13 @@ def calibrate_trims(predictor: Predictor, values: Dict[str, float]) -> np.ndarra
     none = np.empty(0)
     search = Search(predictor, Coordinates([], none, none, np.empty((0, 2)), {}), values)
     trims = np.zeros((len(predictor.windows.flights), len(predictor.trim)))
-    trims[:, 0], trims[:, 1] = 0.02, 1
+    trims[:, 0], trims[:, 1] = values.get(DELAY, 0.02), 1
     x = (trims / search.trim_sizes).ravel()
     free = np.ones(len(x), bool)
     _fix_speed(search, free, _list_scaled(predictor.windows))
-    return np.asarray(search.split(search.find(x, free))[1])
+    if DELAY in values:
+        _fix_delay(search, free)
+    return np.asarray(search.split(search.find(x, free) if free.any() else x)[1])
 
 
 def _make_half(search: Search, flights: Sequence[PreparedFlight], number: int) -> Half:
@@ -302,6 +321,11 @@ def _make_half(search: Search, flights: Sequence[PreparedFlight], number: int) -
 def _list_scaled(windows: Windows) -> List[bool]:
     """Return for each flight whether it shows a factor of the speeds: thrust against weight."""
     return [flight.rotors is None and flight.has_pose for flight in windows.flights]
+
+
+def _fix_delay(search: Search, free: np.ndarray) -> None:
+    """Fix the delay of all flights."""
+    free[search.parameters :: len(search.trim_sizes)] = False
 
 
 def _fix_speed(search: Search, free: np.ndarray, is_free: Sequence[bool]) -> None:

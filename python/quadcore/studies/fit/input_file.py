@@ -8,7 +8,7 @@ from typing import Dict, Mapping, Optional
 from ..._core import InputError
 from ...support.input_files import read_text
 from ...support.output_files import atomic_write, encode_text
-from .inputs import FULL_VOLTAGE, INPUTS
+from .inputs import DELAY, FULL_VOLTAGE, INPUTS, MAP
 
 
 def name_input_file(model: Path) -> Path:
@@ -17,11 +17,11 @@ def name_input_file(model: Path) -> Path:
 
 
 def write_inputs(path: Path, values: Mapping[str, float]) -> None:
-    """Write the parameters of the map; raises `InputError` if that fails."""
+    """Write the parameters of the map, and a fixed delay; raises `InputError` if that fails."""
     lines = [
         f"# Rotor speed [rad/s] = speed command^exponent (voltage / {FULL_VOLTAGE:g} V)^battery,",
         "# with commands from 0 to 1.",
-        *(f"{name.partition('.')[2]}: {values[name]!r}" for name in INPUTS),
+        *(f"{name.partition('.')[2]}: {values[name]!r}" for name in INPUTS if name in values),
     ]
     with atomic_write(path) as stream:
         stream.write(encode_text("\n".join(lines) + "\n"))
@@ -41,13 +41,18 @@ def read_inputs(path: Path) -> Dict[str, float]:
         content = yaml.safe_load(read_text(path))
     except yaml.YAMLError:
         raise InputError(f"{path}:1: this is not YAML. Correct the file.") from None
-    names = [name.partition(".")[2] for name in INPUTS]
-    if not isinstance(content, dict) or set(content) != set(names):
-        raise InputError(f"{path}: write the parameters {', '.join(names)}, and no others.")
+    names = [name.partition(".")[2] for name in MAP]
+    delay = DELAY.partition(".")[2]
+    if not isinstance(content, dict) or set(content) - {delay} != set(names):
+        raise InputError(
+            f"{path}: write the parameters {', '.join(names)}, {delay} if it is fixed, and no "
+            "others."
+        )
     for name, value in content.items():
         if not isinstance(value, (int, float)) or isinstance(value, bool):
             raise InputError(f"{path}: {name} is '{value}'. Write a number.")
-    return {name: float(content[name.partition(".")[2]]) for name in INPUTS}
+    short = {name: name.partition(".")[2] for name in INPUTS}
+    return {name: float(content[key]) for name, key in short.items() if key in content}
 
 
 def find_inputs(given: Optional[Path], model: str) -> Optional[Dict[str, float]]:

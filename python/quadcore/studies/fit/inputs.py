@@ -2,24 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Dict, List, Mapping, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..._core import InputError, Rotor
+from ..._core import InputError, Rotor, parse_number
 from ...formats.recordings.series import Series
+from ...support.parameters import suggest
+from ...support.values import format_value
 from .prepared import PreparedFlight
 from .smoothing import fit_locally
 
-INPUTS = {"inputs.speed": "rad/s", "inputs.exponent": "", "inputs.battery": ""}
+MAP = {"inputs.speed": "rad/s", "inputs.exponent": "", "inputs.battery": ""}
 """Parameters of the map from commands to speeds: w = speed u^exponent (V / full)^battery."""
+
+DELAY = "inputs.delay"
+"""Delay of the inputs behind the pose. Each flight has its own, unless it is fixed."""
+
+INPUTS = {**MAP, DELAY: "s"}
+"""Parameters of the inputs, with their units."""
+
+_LONGEST = 0.12  # s
 
 INPUT_BOUNDS = {
     "inputs.speed": (0.0, np.inf),
     "inputs.exponent": (0.3, 2.0),
     "inputs.battery": (0.0, 2.0),
+    DELAY: (-_LONGEST, _LONGEST),
 }
-"""Minimum and maximum of `INPUTS`: speed controllers lie between, thrust over speed squared."""
+"""Minimum and maximum: exponents lie between those of a speed controller and of a thrust over speed
+squared. Measured rotor speeds may be late, and have negative delays."""
+
+_PREFIX = "inputs."
 
 FULL_VOLTAGE = 4.2
 """Voltage that `inputs.speed` refers to, V."""
@@ -31,6 +45,36 @@ _DENSE = 2.0
 
 TICK = 5e-3
 """Duration of a command, s: the motions of a vehicle and its motors take longer."""
+
+
+def split_inputs(
+    parameters: Optional[Mapping[str, Any]],
+) -> Tuple[Dict[str, float], Dict[str, Any]]:
+    """Split parameters into those of the inputs and the other parameters.
+
+    Raises
+    ------
+    InputError
+        If a parameter of the inputs is unknown, no number, or out of its bounds.
+    """
+    given, others = {}, {}
+    for name, value in (parameters or {}).items():
+        if not name.startswith(_PREFIX):
+            others[name] = value
+            continue
+        if name not in INPUTS:
+            raise InputError(
+                f"set {name}: the inputs have no such parameter.{suggest(name, list(INPUTS))} "
+                f"Use one of {', '.join(INPUTS)}."
+            )
+        number = parse_number(format_value(value))
+        low, high = INPUT_BOUNDS[name]
+        if number is None or not low <= number <= high:
+            raise InputError(
+                f"set {name}: '{value}' is no number from {low:g} to {high:g}. Give one."
+            )
+        given[name] = number
+    return given, others
 
 
 def demand_speeds(
@@ -45,7 +89,7 @@ def demand_speeds(
     time : ndarray
         Times of any shape, s.
     values
-        Values of `INPUTS`.
+        Values of `MAP`.
     rotors
         Number of rotors of the model.
 
@@ -137,8 +181,11 @@ def lag_speeds(
     return speeds
 
 
-def guess_speed(
-    flights: Sequence[PreparedFlight], rotors: Sequence[Rotor], weight: float
+def guess_inputs(
+    flights: Sequence[PreparedFlight],
+    rotors: Sequence[Rotor],
+    weight: float,
+    given: Mapping[str, float],
 ) -> Dict[str, float]:
     """Guess the map from the balance of thrust and weight in the mean of the flights.
 
@@ -146,8 +193,12 @@ def guess_speed(
     ----------
     weight
         Weight of the vehicle, N.
+    given
+        Known values of `INPUTS`.
     """
-    values = {"inputs.speed": 1.0, "inputs.exponent": 1.0, "inputs.battery": 0.5}
+    values = {"inputs.speed": 1.0, "inputs.exponent": 1.0, "inputs.battery": 0.5, **given}
+    if "inputs.speed" in given:
+        return values
     squares: List[float] = []
     for flight in flights:
         if flight.commands is None:

@@ -10,13 +10,12 @@ from ..._core import InputError, Model
 from .coordinates import check_bodies
 from .fitted_model import FittedModel
 from .flight_fit import FlightFit, Progress, fit_flights
-from .inputs import INPUTS, guess_speed
+from .inputs import DELAY, INPUTS, MAP, guess_inputs, split_inputs
 from .judgement import Judgement, judge_models
-from .predictor import Predictor, find_plugin
+from .predictor import find_plugin
 from .prepared import PreparedFlight, check_copies, prepare_flight
 from .problem import check_free_names, make_parameter
 from .replay import Replay, replay_flight
-from .windows import make_windows
 
 _TAGS = (
     "kp",
@@ -111,14 +110,17 @@ def fit_recordings(
 
     Parameters
     ----------
-    model, parameters, xacro_args, ignore, world
+    model, xacro_args, ignore, world
         As for `fit`.
+    parameters
+        As for `fit`. Names of `INPUTS` are fixed at the given values, unless they are free.
     logs
         Recordings to fit.
     judge
         Recordings to judge the fitted and the initial model on.
     free
-        Names of free parameters; ``inputs`` are those of `INPUTS`. Default: `list_default_names`.
+        Names of free parameters; ``inputs`` are those of `INPUTS`. The delay is free in any case,
+        unless `parameters` give it. Default: `list_default_names`.
     mapping
         Mapping of the recordings, see `read_recording`.
     bounds
@@ -133,27 +135,29 @@ def fit_recordings(
     FlightError
         If predictions fail.
     """
+    given, others = split_inputs(parameters)
     flights = [prepare_flight(log, mapping) for log in logs]
     judged = [prepare_flight(log, mapping) for log in judge]
     check_copies(flights, judged)
 
     def make(chosen: Sequence[str]) -> FittedModel:
-        return FittedModel(chosen, model, "eigen", world, None, parameters, xacro_args, ignore)
+        return FittedModel(chosen, model, "eigen", world, None, others, xacro_args, ignore)
 
     if free is None:
-        names = list_default_names(make([]), flights)
+        names = [name for name in list_default_names(make([]), flights) if name not in given]
     else:
         names = _expand_group(check_free_names(free))
     of_inputs = [name for name in names if name in INPUTS]
     of_model = [name for name in names if name not in INPUTS]
     fitted = make(of_model)
-    for name in bounds or {}:
-        if name not in of_model:
+    limits = dict(bounds or {})
+    for name in limits:
+        if name not in names or name == DELAY:
             raise InputError(
                 f"bound {name}: the parameter is not free. Free it, or remove the bound."
             )
-    wanted = [make_parameter(name, fitted, (bounds or {}).get(name)) for name in of_model]
-    found = fit_flights(fitted, wanted, of_inputs, flights, progress)
+    wanted = [make_parameter(name, fitted, limits.pop(name, None)) for name in of_model]
+    found = fit_flights(fitted, wanted, of_inputs, flights, given, limits, progress)
     values = {name: value for name, value in found.values.items() if name not in INPUTS}
     judgement = None
     if judged:
@@ -180,20 +184,21 @@ def predict_recordings(
     Parameters
     ----------
     inputs
-        Values of `INPUTS` (default: from the balance of thrust and weight).
+        Values of `INPUTS` (default: from the balance of thrust and weight), if `parameters` do not
+        give them.
     controller
         Controller that follows the recorded set-points in closed loop (default: no replay).
     model, logs, mapping, parameters, xacro_args, ignore, world
         As for `fit_recordings`.
     """
+    given, others = split_inputs(parameters)
     flights = [prepare_flight(log, mapping) for log in logs]
-    fitted = FittedModel([], model, "eigen", world, None, parameters, xacro_args, ignore)
-    if inputs is None:
-        predictor = Predictor(fitted, make_windows(flights))
-        weight = 9.81 * fitted.simulation.mass
-        inputs = guess_speed(flights, predictor.rotors, weight)
+    fitted = FittedModel([], model, "eigen", world, None, others, xacro_args, ignore)
+    known = {**(inputs or {}), **given}
+    weight = 9.81 * fitted.simulation.mass
+    values = guess_inputs(flights, fitted.simulation.rotors, weight, known)
     replays = [replay_flight(fitted, flight, controller) for flight in flights if controller]
-    return judge_models({"model": (fitted, inputs)}, flights), flights, replays
+    return judge_models({"model": (fitted, values)}, flights), flights, replays
 
 
 def list_default_names(fitted: FittedModel, flights: Sequence[PreparedFlight]) -> List[str]:
@@ -211,7 +216,7 @@ def list_default_names(fitted: FittedModel, flights: Sequence[PreparedFlight]) -
     link = fitted.model.links[0].name
     names += [f"{link}.{moment}" for moment in _MOMENTS]
     if any(flight.rotors is None for flight in flights):
-        names += list(INPUTS) if has_pose else []
+        names += list(MAP) if has_pose else []
     return names
 
 
