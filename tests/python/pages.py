@@ -17,9 +17,7 @@ is shown, and programs of systems that are not here are stood in for (`stand_in.
 from __future__ import annotations
 
 import ast
-import atexit
 import contextlib
-import functools
 import inspect
 import os
 import re
@@ -28,17 +26,16 @@ import signal
 import site
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from xml.etree import ElementTree
 
 import matplotlib
+from processes import list_client
 
 import quadcore as qc
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"
-FORKS = Path(__file__).with_name("forks.py")
 # These fly as long as they say.
 WHOLE = (ROOT, ROOT / "python", ROOT / "docs" / "tutorials")
 PAGES = sorted((ROOT / "docs").rglob("*.md"))
@@ -129,24 +126,6 @@ def run(page, folder):
         if (folder / "served").exists():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(int((folder / "served").read_text().split()[1]), signal.SIGTERM)
-
-
-@functools.lru_cache(maxsize=None)
-def start_server():
-    """Start the process whose forks run quadcore and Python, and return its address."""
-    folder = tempfile.TemporaryDirectory(prefix="forks")
-    address = f"{folder.name}/socket"
-    server = subprocess.Popen(
-        [sys.executable, str(FORKS), address], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    )
-    assert server.stdout.readline() == b"ready\n"
-    atexit.register(lambda: (server.stdin.close(), server.wait(), folder.cleanup()))
-    return address
-
-
-def list_client(program):
-    """List the words that run a program of `stand_in` in a fork."""
-    return [sys.executable, "-IS", str(FORKS), start_server(), program]
 
 
 def call(text, folder, short):

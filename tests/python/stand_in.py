@@ -29,10 +29,7 @@ def quadcore(words):
         at = words.index("--dask")
         del words[at : at + 2]
     if words[0] != "serve":
-        from quadcore.__main__ import run
-
-        sys.argv[1:] = words
-        run()
+        run_quadcore(words)
     command = [sys.executable, "-m", "quadcore", *words]
     if "--port" in words:
         command[command.index("--port") + 1] = "0"  # which nobody else has
@@ -41,6 +38,14 @@ def quadcore(words):
     address = served.stdout.readline()
     assert address.startswith("serving ")
     Path("served").write_text(f"{address.rpartition(':')[2].strip()} {served.pid}")
+
+
+def run_quadcore(words):
+    """Run quadcore as typed."""
+    from quadcore.__main__ import run
+
+    sys.argv[1:] = words
+    run()
 
 
 def python(words):
