@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 from inspect import signature
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
@@ -219,6 +218,8 @@ def write_log(
         with writer as bag:
             _write_rows(bag, Messages(), columns, table, wrenches, ignored)
         with part.open("rb") as written:
+            import shutil  # is slow to import
+
             shutil.copyfileobj(written, stream)
 
 
@@ -260,6 +261,8 @@ def write_ros2_log(
         raise make_write_error(path, error) from error
     finally:
         with interrupts.hold_signals():
+            import shutil  # is slow to import
+
             shutil.rmtree(part, ignore_errors=True)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 from typing import Callable, Mapping, Sequence
 
@@ -35,6 +34,8 @@ class DeferredLogFile:
         terms: Sequence[str],
         ignored: Sequence[str],
     ) -> None:
+        import tempfile  # is slow to import
+
         self.path = path
         self.wrenches = bool(terms)
         self._write = write

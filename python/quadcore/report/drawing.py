@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import re
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -97,6 +96,8 @@ def make_element(document: str) -> str:
     text = document[document.index("<svg") :]
     text = text.replace("<svg", '<svg style="stroke-linejoin: round; stroke-linecap: butt"', 1)
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.S)
+    import hashlib  # is slow to import
+
     text = re.sub(r' (?:d|x|y)="[^"]*"', lambda found: _DIGITS.sub(r"\1", found.group()), text)
     numbers: Dict[str, str] = {}
     for name in _REFERENCE.findall(text):

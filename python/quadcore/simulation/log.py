@@ -10,7 +10,6 @@ import numpy as np
 
 from .._core import InputError
 from ..formats import find_format, mat
-from ..formats.recordings import is_recording, make_log_rows, read_recording
 from ..formats.rows import LogFile, list_wrench_columns, split_columns
 from ..report.drawing import check_formats, get_formats, name_files, use_formats
 from ..support.arguments import NAME, check
@@ -76,6 +75,8 @@ class Log(Trajectory):
             If the format is unknown, the file cannot be read, or it contains no log; the message
             begins with the file and, for text, the line.
         """
+        with LOCK:
+            from ..formats.recordings import is_recording, make_log_rows, read_recording
         file = _check_path(path)
         if mapping is not None or is_recording(file):
             read = make_log_rows(read_recording(file, None if mapping is None else str(mapping)))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import glob
 import os
-import shutil
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Iterable, Iterator, Tuple, Union
@@ -42,6 +41,8 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
         with part.open("wb") as stream:
             yield stream
         if target.exists():
+            import shutil  # is slow to import
+
             shutil.copymode(str(target), str(part))
         os.replace(part, target)
     except OSError as error:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import inspect
 from numbers import Real
 from typing import Any, Callable, Dict, Iterable, Mapping, Sequence
@@ -84,6 +83,8 @@ def suggest(name: str, known: Sequence[str]) -> str:
 
     Leading dashes of options do not count.
     """
+    import difflib  # is slow to import
+
     bare = {each.lstrip("-"): each for each in known}
     near = difflib.get_close_matches(name.lstrip("-"), bare, 1, _CLOSE)
     return f" Did you mean '{bare[near[0]]}'?" if near else ""
