@@ -14,7 +14,7 @@ from processes import QUADCORE, run_command, run_refused
 import quadcore as qc
 from quadcore.autopilots import Betaflight, Readings, Sticks, read_autopilot
 from quadcore.autopilots.betaflight import frames, packets
-from quadcore.autopilots.earth import Location
+from quadcore.model.earth import Location
 from quadcore.support.rotation import compose_roll_pitch_yaw, to_matrix
 
 
@@ -216,5 +216,5 @@ def test_an_evaluation_is_bit_identical(tmp_path):
 
 
 def test_the_class_is_a_controller(tmp_path):
-    with pytest.raises(qc.InputError, match="hold is 1, but Betaflight arms 1"):
+    with pytest.raises(qc.InputError, match="hold is 1, but Betaflight needs at least 1"):
         Betaflight("true", hold=1)

@@ -14,8 +14,8 @@ from processes import run_command
 import quadcore as qc
 from quadcore.autopilots import Readings, read_autopilot
 from quadcore.autopilots.axes import turn_body_vector, turn_heading, turn_orientation
-from quadcore.autopilots.earth import Location, find_magnetic_field
 from quadcore.autopilots.px4.sensors import SensorPackets, find_pressure
+from quadcore.model.earth import Location
 from quadcore.support.rotation import to_matrix, turn
 
 mavlink = pytest.importorskip("pymavlink.dialects.v20.common")
@@ -82,22 +82,6 @@ def test_the_pressure_is_that_of_the_standard_atmosphere():
     """ISO 2533, table 1, at a geopotential altitude of 5 km."""
     assert find_pressure(0.0) == pytest.approx(1013.25)
     assert find_pressure(5000.0) == pytest.approx(540.20, abs=0.01)
-
-
-@pytest.mark.parametrize(
-    ("location", "declination", "inclination", "strength"),
-    [
-        (Location(47.38, 8.54, 400.0), 3.5, 63.3, 48.4),  # Zurich
-        (Location(-33.87, 151.21, 0.0), 12.8, -64.2, 57.0),  # Sydney
-    ],
-)
-def test_the_magnetic_field_is_that_of_the_place(location, declination, inclination, strength):
-    """Angles (deg) and strength (uT) as surveys state them; they drift by 0.2 deg per year."""
-    east, north, up = find_magnetic_field(location) * 1e6
-    level = math.hypot(east, north)
-    assert math.degrees(math.atan2(east, north)) == pytest.approx(declination, abs=0.5)
-    assert math.degrees(math.atan2(-up, level)) == pytest.approx(inclination, abs=0.5)
-    assert math.hypot(level, up) == pytest.approx(strength, abs=0.4)
 
 
 def test_headings_turn_clockwise_from_north():

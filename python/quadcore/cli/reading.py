@@ -43,6 +43,7 @@ def make_flight_plan(arguments: argparse.Namespace) -> FlightPlan:
     plan = FlightPlan.of(
         **read_model_arguments(arguments),
         **{name: given[name] for name in ("engine", "world", "dt", "seed", "scenario", "wind")},
+        at=given.get("at"),
         spawn=arguments.spawn or SPAWN,
         duration=given.get("duration", math.inf),
         commands=given.get("commands"),

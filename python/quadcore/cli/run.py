@@ -49,7 +49,7 @@ def register(commands: Any) -> None:
     options.add_flight(parser, choices=list_engines())
     options.add_commands(parser)
     options.add_controller(parser)
-    options.add_options(parser, "controller_rate", "delay", "scenario", "wind")
+    options.add_options(parser, "controller_rate", "delay", "scenario", "wind", "at")
     options.add_out(parser, "log, plots, page, expanded URDF and run.json")
     find_group(parser, OUTPUT).add_argument(
         "--log",

@@ -28,6 +28,7 @@ _PLOTS = {
     "wrenches": "Forces and torques",
     "path": "Path of the frame",
     "error": "Tracking error",
+    "autopilot": "Autopilot",
 }
 """Headings of the page, by the names of the plots."""
 

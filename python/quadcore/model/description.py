@@ -7,12 +7,13 @@ from typing import Dict, Mapping, Optional, Sequence, Tuple, Union
 
 from .. import _core
 from .._core import Document, InputError, Model, World
-from ..support.arguments import LIST, NAME, OPTIONS, check, read_once
+from ..support.arguments import LIST, NAME, OPTIONS, PLACE, check, or_none, read_once
 from ..support.import_lock import LOCK
 from ..support.input_files import check_regular, is_file
 from ..support.output_files import printable_name
 from ..support.parameters import suggest
 from . import resources, xml_source
+from .earth import check_location, place_world
 
 _XACRO = (".xacro", ".gazebo")
 """Suffixes of xacro files; RotorS uses the second."""
@@ -53,7 +54,11 @@ def read_model(
     )
 
 
-def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ()) -> World:
+def read_world(
+    world: Union[str, Path, None] = None,
+    ignore: Sequence[str] = (),
+    at: Optional[Sequence[float]] = None,
+) -> World:
     """Read a world once, for any number of simulations.
 
     Parameters
@@ -62,6 +67,10 @@ def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ())
         World file, or name of a built-in world. Default: empty.world.
     ignore : sequence of str, default ()
         As for `read_model`.
+    at : sequence of 2 or 3 numbers, optional
+        Latitude and longitude of the world's origin, deg, and its altitude above the sea, m
+        (default 0). Sets the gravity (WGS 84), the magnetic field (World Magnetic Model) and the
+        origin of GPS receivers. Default: those of the world.
 
     Returns
     -------
@@ -73,9 +82,23 @@ def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ())
     InputError
         If the world is wrong; the message begins with ``FILE:LINE``.
     """
-    check({"world": world}, OPTIONS)
+    check({"world": world, "at": at}, {**OPTIONS, "at": or_none(PLACE)})
     document = load_world(None if world is None else str(world))
-    return _core.read_world(document, check_names_argument("ignore", ignore))
+    read = _core.read_world(document, check_names_argument("ignore", ignore))
+    return read if at is None else place_world(read, check_location(at))
+
+
+def read_world_once(
+    world: Union[str, Path, World, None],
+    ignore: Sequence[str],
+    at: Optional[Sequence[float]],
+) -> World:
+    """Read a world as `read_world`, unless it is read already."""
+    if not isinstance(world, World):
+        return read_world(world, ignore, at)
+    if at is not None:
+        raise InputError("at: the world has already been read. Give it to read_world.")
+    return world
 
 
 def read_both(
@@ -83,6 +106,7 @@ def read_both(
     world: Union[str, Path, World, None],
     xacro_args: Optional[Mapping[str, object]],
     ignore: Sequence[str],
+    at: Optional[Sequence[float]] = None,
 ) -> Tuple[Model, World]:
     """Read a model and a world, except for those that are read already.
 
@@ -96,8 +120,7 @@ def read_both(
         model = read_model(model, xacro_args, names)
     elif xacro_args:
         raise InputError("xacro_args: the model has already been read. Give them to read_model.")
-    if not isinstance(world, World):
-        world = read_world(world, names)
+    world = read_world_once(world, names, at)
     _core.check_ignored(names, [model.ignored_elements, world.ignored_elements])
     return model, world
 

@@ -148,6 +148,7 @@ class FlightPlan:
         commands: Optional[CommandsLike] = None,
         scenario: Union[str, Path, Scenario, None] = None,
         wind: Optional[Sequence[float]] = None,
+        at: Optional[Sequence[float]] = None,
         **others: Unpack[_Others],
     ) -> FlightPlan:
         """Make a plan from files and names.
@@ -162,6 +163,8 @@ class FlightPlan:
             Disturbances and faults: a file, or the name of a built-in scenario.
         wind
             Velocity of a constant wind, world axes, m/s.
+        at
+            As for `read_world`.
         **others
             Other attributes of the plan.
 
@@ -171,7 +174,7 @@ class FlightPlan:
             If the model, the world, the commands, the scenario or an argument is wrong.
         """
         arguments, given = split_xacro_arguments(parameters, xacro_args)
-        readings = read_both(model, world, arguments, ignore)
+        readings = read_both(model, world, arguments, ignore, at)
         check_names(readings[0], parameters or {})
         plan = cls(
             *readings,

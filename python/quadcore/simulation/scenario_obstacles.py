@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
-from xml.parsers import expat
+from typing import Dict, List, NamedTuple, Sequence
+from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
 import yaml
 
-from .._core import Document, InputError, World, read_world
+from .._core import InputError, World, read_world
+from ..model.world_text import change_world_text
 from ..support.parameters import suggest
 from ..support.yaml_nodes import find_line, read_numbers, read_pairs
 
@@ -86,22 +87,15 @@ def add_obstacles(world: World, obstacles: Sequence[PlacedObstacle], file: str) 
     """
     if not obstacles:
         return world
-    document = world.document
-    names, end = _find_models(document.text)
+    names = _find_models(world.document.text)
     for obstacle in obstacles:
         if obstacle.name in names:
             raise InputError(
                 f"{file}:{obstacle.line}: the world already has a model '{obstacle.name}'. Give "
                 "the obstacle another name."
             )
-    before, after = document.text[:end], document.text[end:]
-    count = document.text.count("\n") + 1
-    lines: List[Any] = document.lines or [(document.name, i + 1) for i in range(count)]
-    last = before.count("\n") + 1  # the line in which the world ends
-    written = [obstacle.write() for obstacle in obstacles]
-    places = [(file, obstacle.line) for obstacle in obstacles]
-    text = "\n".join([before, *written, after])
-    changed = Document(document.name, text, [*lines[:last], *places, *lines[last - 1 :]])
+    added = [(obstacle.write(), (file, obstacle.line)) for obstacle in obstacles]
+    changed = change_world_text(world.document, (), added)
     return read_world(changed, list(world.ignored_elements.ignored))
 
 
@@ -134,22 +128,6 @@ def _read_obstacle(file: str, node: yaml.Node, number: int) -> PlacedObstacle:
     return PlacedObstacle(name, kind, values[kind], pose, line)
 
 
-def _find_models(text: str) -> Tuple[List[str], int]:
-    """Return the names of the models of a world, and the position where its element ends."""
-    parser = expat.ParserCreate()
-    names: List[str] = []
-    end = 0
-
-    def start(element: str, attributes: Dict[str, str]) -> None:
-        if element == "model":
-            names.append(attributes.get("name", ""))
-
-    def stop(element: str) -> None:
-        nonlocal end
-        if element == "world":
-            end = parser.CurrentByteIndex
-
-    parser.StartElementHandler, parser.EndElementHandler = start, stop
-    encoded = text.encode()
-    parser.Parse(encoded, True)
-    return names, len(encoded[:end].decode())
+def _find_models(text: str) -> List[str]:
+    """Return the names of the models of a world."""
+    return [model.get("name", "") for model in ElementTree.fromstring(text).iter("model")]

@@ -20,8 +20,8 @@ from typing import (
     Union,
 )
 
-from .._core import InputError, World, check_ignored
-from ..model.description import check_names_argument, read_world
+from .._core import InputError, check_ignored
+from ..model.description import check_names_argument, read_world_once
 from ..simulation.commands import CommandsLike, check_commands
 from ..simulation.controller_pilot import ControllerPilot
 from ..simulation.engines import list_engines
@@ -99,9 +99,8 @@ class Cases(Sequence[Case]):
         scenario: Any = options.scenario
         world: Any = options.world
         changes = options.parameters, options.xacro_args, options.ignore
-        self.variation = Variation(models, design, *changes, scenario, options.wind)
-        if not isinstance(world, World):
-            world = read_world(world, options.ignore)
+        self.variation = Variation(models, design, *changes, scenario, options.wind, options.at)
+        world = read_world_once(world, options.ignore, options.at)
         everything = [*self.variation.models, world, *self.variation.worlds.values()]
         ignored = check_names_argument("ignore", options.ignore)
         check_ignored(ignored, [each.ignored_elements for each in everything])

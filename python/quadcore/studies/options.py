@@ -116,6 +116,12 @@ class Options:
         f"world file, or a built-in world: {', '.join(resources.list_shipped('worlds'))}",
         kind=arguments.ANY, without="empty",
     ))  # fmt: skip
+    at: Optional[Sequence[float]] = field(default=None, metadata=_describe(
+        VEHICLE, "at", "LAT,LON[,ALT]",
+        "place on Earth of the world's origin in degrees and m, which sets gravity, magnetic field "
+        "and the origin of GPS receivers", parse.location,
+        arguments.or_none(arguments.PLACE), "that of the world",
+    ))  # fmt: skip
     dt: Optional[float] = field(default=None, metadata=_describe(
         FLIGHT, "dt", "S", "step in seconds", parse.positive,
         arguments.OPTIONS["dt"], "the world's",
@@ -186,6 +192,7 @@ class Keywords(TypedDict, total=False):
     xacro_args: Optional[Mapping[str, object]]
     ignore: Sequence[str]
     world: Union[str, Path, None]
+    at: Optional[Sequence[float]]
     dt: Optional[float]
     scenario: Optional[Names]
     wind: Optional[Sequence[float]]

@@ -35,6 +35,8 @@ class Variation:
         Scenario of points without one.
     wind
         Velocity of a constant wind in all flights, m/s.
+    at
+        Place on Earth of the points' worlds; see `read_world`.
     """
 
     def __init__(
@@ -46,6 +48,7 @@ class Variation:
         ignore: Sequence[str],
         scenario: Union[str, Path, Scenario, None],
         wind: Optional[Sequence[float]] = None,
+        at: Optional[Sequence[float]] = None,
     ) -> None:
         arguments, given = split_xacro_arguments(parameters, xacro_args)
         self.arguments = arguments
@@ -57,7 +60,7 @@ class Variation:
         )
         self.models: List[Model] = [self._read(i, ()) for i in range(len(models))]
         self.worlds: Dict[str, World] = {
-            name: read_world(name, ignore) for name in dict.fromkeys(design.values("world"))
+            name: read_world(name, ignore, at) for name in dict.fromkeys(design.values("world"))
         }
         self.scenarios: Dict[Optional[str], Optional[Scenario]] = {None: read_scenario(scenario)}
         names = dict.fromkeys(design.values("scenario"))

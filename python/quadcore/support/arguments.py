@@ -78,6 +78,14 @@ def _is_lasting(value: Any) -> bool:
     return isinstance(value, Iterable) and not isinstance(value, Iterator)
 
 
+def _count_numbers(value: Any) -> int:
+    """Return the number of values of a sequence of finite numbers; 0 for anything else."""
+    if not _is_lasting(value) or isinstance(value, (str, Mapping)):
+        return 0
+    numbers = list(value)
+    return len(numbers) if all(isinstance(x, Real) and math.isfinite(x) for x in numbers) else 0
+
+
 def _are_guides(value: Any) -> bool:
     guides = value if isinstance(value, (list, tuple)) else [value]
     return all(isinstance(one, str) or callable(one) for one in guides)
@@ -144,12 +152,10 @@ LAG: Kind = (
     lambda value: isinstance(value, Real) and 0 <= float(value) <= 10,
     "seconds, from 0 to 10",
 )
-VECTOR: Kind = (
-    lambda value: (
-        _is_lasting(value)
-        and [isinstance(x, Real) and math.isfinite(x) for x in value] == [True] * 3
-    ),
-    "three numbers",
+VECTOR: Kind = (lambda value: _count_numbers(value) == 3, "three numbers")
+PLACE: Kind = (
+    lambda value: _count_numbers(value) in (2, 3),
+    "latitude and longitude in degrees, and perhaps an altitude in m",
 )
 LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
 WHOLE: Kind = (_is_whole, "a whole number")

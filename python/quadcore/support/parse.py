@@ -117,6 +117,11 @@ def vector(text: str) -> tuple[float, ...]:
     return _numbers(text, "x,y,z", (3,))
 
 
+def location(text: str) -> tuple[float, ...]:
+    """Read ``latitude,longitude[,altitude]``, with commas or spaces between."""
+    return _numbers(text, "latitude,longitude[,altitude]", (2, 3))
+
+
 def _numbers(text: str, form: str, counts: Sequence[int]) -> tuple[float, ...]:
     values = tuple(finite(part) for part in re.split(r"\s*,\s*|\s+", text.strip()))
     if len(values) not in counts:

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..._core import FlightError, InputError
 from ...control.vehicle import Vehicle
+from ...model.earth import find_location
 from ..arming import ArmingWatch
-from ..earth import Location
 from ..exchange import Exchange, check_free, find_free_port
 from ..program import Program
 from ..program_autopilot import ProgramAutopilot, fly_reference
@@ -92,7 +92,7 @@ class Betaflight(ProgramAutopilot):
 
     def start(self, vehicle: Vehicle) -> None:
         """Write the parameters and start the program."""
-        self._vehicle = vehicle
+        self._location = find_location(vehicle.world)
         self._pilot = StickPilot(
             vehicle,
             self.curve,
@@ -128,7 +128,7 @@ class Betaflight(ProgramAutopilot):
         if sticks is not self._sticks:
             self._sticks = sticks
             exchange.send(pack_radio(time, sticks), self.ports.radio, fail)
-        fields = frames.convert_readings(readings, self._first, Location())
+        fields = frames.convert_readings(readings, self._first, self._location)
         answer = exchange.ask(pack_state(time, fields), self.ports.state, fail)
         if not answer and self._is_strict and readings.time < 0:  # it is still starting
             return _STILL

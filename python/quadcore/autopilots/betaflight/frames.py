@@ -19,7 +19,7 @@ from typing import Tuple
 
 import numpy as np
 
-from ..earth import Location
+from ...model.earth import Location
 from ..readings import Readings
 
 _PRESSURE = 101325.0  # Pa; the default build computes it from the altitude

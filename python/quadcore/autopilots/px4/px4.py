@@ -15,8 +15,8 @@ import numpy as np
 
 from ..._core import FlightError, InputError
 from ...control.vehicle import Vehicle
+from ...model.earth import find_location, find_magnetic_field
 from ..arming import ArmingWatch
-from ..earth import Location, find_magnetic_field
 from ..program import Program
 from ..program_autopilot import ProgramAutopilot
 from ..readings import Readings
@@ -93,7 +93,7 @@ class PX4(ProgramAutopilot):
         self._mavlink = mavlink = _import_mavlink()
         self._mav = mavlink.MAVLink(None, _SYSTEM, mavlink.MAV_COMP_ID_ONBOARD_COMPUTER)
         self._mav.robust_parsing = True
-        location = Location()
+        location = find_location(vehicle.world)
         self._packets = SensorPackets(mavlink, find_magnetic_field(location), location)
         self._telemetry = Telemetry()
         self._watch = ArmingWatch(self.fail, self._quote_messages)

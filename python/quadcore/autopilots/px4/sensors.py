@@ -11,9 +11,9 @@ from typing import Any, List
 
 import numpy as np
 
+from ...model.earth import Location
 from ...support.rotation import to_matrix
 from ..axes import turn_body_vector, turn_world_vector
-from ..earth import Location
 from ..readings import Readings
 
 _GYROSCOPE = 0.001  # rad/s; standard deviations of the noise
