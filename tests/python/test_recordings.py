@@ -20,7 +20,7 @@ from recording_files import (
 )
 
 import quadcore as qc
-from quadcore.formats.recordings import read_recording
+from quadcore.formats.recordings import read_recording, ulog
 from quadcore.formats.recordings.bits import ENCODINGS, Reader
 
 REAL = Path(__file__).resolve().parents[1] / "data" / "recordings"
@@ -108,6 +108,30 @@ def test_a_ulog_without_the_wanted_topics_is_refused(tmp_path):
     pytest.importorskip("pyulog")
     file = save(tmp_path / "a.ulg", make_ulog({"unrelated": PX4["unrelated"]}))
     assert "none of the columns" in refusal(file)
+
+
+def test_a_ulog_is_the_same_whole_compressed_and_in_parts(tmp_path, monkeypatch):
+    pytest.importorskip("pyulog")
+    data = make_ulog(PX4)
+    (tmp_path / "b.ulg").write_bytes(gzip.compress(data))
+    whole = read_recording(save(tmp_path / "a.ulg", data)).quantities
+    others = [read_recording(tmp_path / "b.ulg").quantities]
+    for size in (40, 61, 100):  # also within messages
+        monkeypatch.setattr(ulog, "_PART", size)
+        others.append(read_recording(tmp_path / "a.ulg").quantities)
+    for other in others:
+        assert list(other) == list(whole)
+        for name, (time, values) in other.items():
+            assert np.array_equal(time, whole[name].time)
+            assert np.array_equal(values, whole[name].values)
+
+
+def test_a_ulog_that_ends_within_a_message_is_read_with_a_warning(tmp_path):
+    pytest.importorskip("pyulog")
+    data = make_ulog({name: PX4[name] for name in PX4 if name != "unrelated"})
+    with pytest.warns(qc.QuadcoreWarning, match="a.ulg: the ULog ends within a message"):
+        given = read_recording(save(tmp_path / "a.ulg", data[:-3])).quantities
+    assert len(given["position"].time) == 2 and "rates" not in given
 
 
 def test_a_damaged_ulog_ends_with_one_line(tmp_path):

@@ -80,7 +80,8 @@ def map_columns(columns: Columns, mapping: LogMapping, is_shipped: bool) -> Reco
 
 
 def _convert(name: str, series: Series, entry: Entry, mapping: LogMapping) -> Series:
-    values = series.values * (entry.factor * np.array(entry.signs))
+    values = series.values  # a copy of the columns, which may be large
+    values *= entry.factor * np.array(entry.signs)
     time = series.time * (mapping.time_factor if mapping.format == "csv" else 1.0)
     if name == "orientation":
         values = _to_quaternions(values, entry.order, mapping)
@@ -89,7 +90,7 @@ def _convert(name: str, series: Series, entry: Entry, mapping: LogMapping) -> Se
     elif name == "setpoint_yaw" and mapping.is_ned:
         values = np.pi / 2 - values
     elif mapping.is_frd and (name in ("rates", "acceleration") or entry.axes == "body"):
-        values = values * (1, -1, -1)
+        values *= (1, -1, -1)
     elif name in ("commands", "rotors"):
         if entry.range is not None:
             values = (values - entry.range[0]) / (entry.range[1] - entry.range[0])
@@ -130,7 +131,7 @@ def _count_incomplete(series: Series) -> int:
 
 def _drop_empty(series: Series) -> Series:
     kept = np.isfinite(series.values).all(axis=1) & np.isfinite(series.time)
-    return Series(series.time[kept], series.values[kept])
+    return series if kept.all() else Series(series.time[kept], series.values[kept])
 
 
 def _turn_velocity(where: str, found: Dict[str, Series]) -> Series:

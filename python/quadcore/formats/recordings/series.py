@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import gzip
 import zlib
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Dict, Mapping, NamedTuple, Sequence
+from typing import IO, Dict, Iterator, Mapping, NamedTuple, Sequence, cast
 
 import numpy as np
 
@@ -61,7 +62,7 @@ class Columns:
         return list(self._columns)
 
     def stack(self, names: Sequence[str]) -> Series:
-        """Return columns of one topic side by side.
+        """Return a copy of columns of one topic side by side, in float64.
 
         Raises
         ------
@@ -72,10 +73,13 @@ class Columns:
             if name not in self._columns:
                 near = suggest(name, self.names)
                 raise InputError(f"{self.where}: column '{name}' does not exist.{near}")
-        parts = [np.asarray(self._columns[name], dtype=float) for name in names]
+        parts = [self._columns[name] for name in names]
         if len({len(part) for part in parts}) != 1:
             raise InputError(f"{self.where}: {', '.join(names)} have different numbers of rows")
-        return Series(self._times[names[0]], np.column_stack(parts))
+        values = np.empty((len(parts[0]), len(parts)))
+        for place, part in enumerate(parts):
+            values[:, place] = part
+        return Series(self._times[names[0]], values)
 
 
 def make_columns(where: str, time: np.ndarray, columns: Mapping[str, np.ndarray]) -> Columns:
@@ -83,18 +87,26 @@ def make_columns(where: str, time: np.ndarray, columns: Mapping[str, np.ndarray]
     return Columns(where, columns, dict.fromkeys(columns, time))
 
 
-def read_head(path: Path) -> bytes:
-    """Read the first bytes of a file, also of a compressed one (gzip)."""
+@contextmanager
+def open_content(path: Path) -> Iterator[IO[bytes]]:
+    """Open a file, also a compressed one (gzip); raises `InputError` if it is damaged."""
     with open_file(path) as stream:
         try:
             head = stream.read(len(_GZIP))
             stream.seek(0)
             if head != _GZIP:
-                return stream.read(_HEAD)
+                yield stream
+                return
             with gzip.open(stream) as unpacked:
-                return unpacked.read(_HEAD)
+                yield cast(IO[bytes], unpacked)
         except (EOFError, gzip.BadGzipFile, zlib.error) as error:
             raise InputError(f"{path}: the compressed file is damaged: {error}.") from error
+
+
+def read_head(path: Path) -> bytes:
+    """Read the first bytes of a file, also of a compressed one (gzip)."""
+    with open_content(path) as stream:
+        return stream.read(_HEAD)
 
 
 def read_content(path: Path) -> bytes:
