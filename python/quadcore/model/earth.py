@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from typing import NamedTuple, Sequence, Tuple
-from xml.etree import ElementTree
 
 import numpy as np
 
@@ -101,6 +100,8 @@ def find_magnetic_field(location: Location) -> np.ndarray:
 
 def find_location(world: World) -> Location:
     """Return the location that a world states in <spherical_coordinates>, or the default."""
+    from xml.etree import ElementTree  # takes 6 ms to import
+
     text = world.document.text
     for child in find_children(text)[0]:
         if child.name == _ORIGIN:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from typing import Any, Collection, List, NamedTuple, Sequence, Tuple
-from xml.parsers import expat
 
 from .._core import Document
 
@@ -28,6 +27,8 @@ def find_children(text: str) -> Tuple[List[Child], int]:
     text
         World that has been read, so that it is well-formed.
     """
+    from xml.parsers import expat
+
     parser = expat.ParserCreate()
     open_elements: List[Tuple[str, int]] = []
     children: List[Child] = []
