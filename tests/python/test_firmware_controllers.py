@@ -15,6 +15,7 @@ from quadcore.control import controllers, references
 
 FIRMWARE = ("crazyflie_pid", "mellinger", "px4")
 REP4 = Path(__file__).parents[1] / "data/recordings/nanobench/rep4_excerpt.csv.gz"
+
 PERIOD = 1 / 500
 AHEAD = qc.Reference(position=(0.1, 0, 2), yaw=0)
 
@@ -125,6 +126,24 @@ def test_velocities_of_the_reference_are_fed_forward(name, crazyflie):
     ramp = references.ramp(height=2, vx=0.4, time=0)
     log = crazyflie.run(12, controller=name, reference=ramp, log_every=10)
     assert abs(log.topics["error"]["x"][-1]) < 0.05
+
+
+def test_mellinger_flies_as_low_as_the_real_vehicle_if_it_demands_as_little_thrust(tmp_path):
+    """The firmware demands the weight of 29 g in hover, at 132000 counts per newton."""
+    heights = {}
+    demanded, needed = 0.029 * 9.81 * 132000 / 65535, 0.786
+    for factor in (1, demanded / needed):
+        controller = f"mellinger:believed_mass={factor:.4g}"
+        done = run_command(
+            "predict", "crazyflie", "--log", REP4, "--controller", controller, "--force",
+            "--out", tmp_path,
+        )  # fmt: skip
+        assert f"mean motor command {needed}" in done.stdout
+        measured, flown = (qc.Log.of_file(tmp_path / f"logs/{n}.csv") for n in (1, 2))
+        heights[factor] = np.mean(flown.position[100:, 2] - measured.position[100:, 2])
+    by_model, by_firmware = heights.values()
+    assert 0.06 < by_model < 0.12
+    assert abs(by_firmware) < 0.04
 
 
 def test_setpoints_of_a_real_flight_are_flown_with_the_lag_of_the_firmware(tmp_path):

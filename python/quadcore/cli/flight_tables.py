@@ -83,4 +83,9 @@ def show_replays(replays: Sequence[Replay]) -> None:
         for title, (rms, largest) in replay.list_rows():
             table.add_row(name, title, f"{rms:.3g}", f"{largest:.3g}", "m")
             name = ""
-    console.print(table, "")
+    console.print(table)
+    for replay in replays:
+        if replay.mean_command is not None:
+            name = Path(replay.where).name
+            console.print(f"{name}: mean motor command {replay.mean_command:.3f} of the maximum")
+    console.print("")

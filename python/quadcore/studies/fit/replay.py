@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, NamedTuple, Tuple
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class Replay(NamedTuple):
     distances : dict of str to tuple of float
         RMS and maximum distance to the real flight, m: of the replay, the set-points and the
         delayed set-points.
+    mean_command : float, optional
+        Mean motor command of the real flight, from 0 to 1.
     """
 
     where: str
@@ -45,6 +47,7 @@ class Replay(NamedTuple):
     setpoints: np.ndarray
     delay: float
     distances: Dict[str, Tuple[float, float]]
+    mean_command: Optional[float]
 
     def list_rows(self) -> List[Tuple[str, Tuple[float, float]]]:
         """List a title, and RMS and maximum distance, for tables."""
@@ -117,8 +120,13 @@ def replay_flight(fitted: FittedModel, flight: PreparedFlight, controller: str) 
         "set-points": _measure(setpoints, measured),
         "delayed set-points": _measure(delayed[best], measured),
     }
+    mean = None
+    if flight.commands is not None:
+        commands = flight.commands
+        inside = (commands.time >= begin) & (commands.time <= flight.span[1])
+        mean = float(commands.values[inside].mean())
     return Replay(
-        flight.where, controller, measured, flown, setpoints, float(_DELAYS[best]), distances
+        flight.where, controller, measured, flown, setpoints, float(_DELAYS[best]), distances, mean
     )
 
 
