@@ -15,6 +15,7 @@ void bind_plugins(py::module_& m);
 void bind_snapshot(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_flight(py::module_& m);
+void bind_fleet(py::module_& m);
 void bind_batch(py::module_& m);
 void bind_reference(py::module_& m);
 void bind_odometry(py::module_& m);

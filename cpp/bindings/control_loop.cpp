@@ -26,11 +26,17 @@ class BoundLoop {
       : bound_(bound),
         loop_(bound.guarded->simulation, bound.flight, rate, delay),
         width_(bound.guarded->simulation.command_width()),
-        timed_(timed) {}
+        timed_(timed) {
+    bound.after_step = [this] { loop_.finish(); };
+  }
+  ~BoundLoop() { bound_.after_step = nullptr; }
+  BoundLoop(const BoundLoop&) = delete;
+  BoundLoop& operator=(const BoundLoop&) = delete;
 
-  /// Advances under a built-in controller, without the interpreter.
-  void follow(std::int64_t n, BoundController& bound, const std::string& odometry,
-              const ReferenceShape& reference) {
+  /// Advances under a built-in controller, without the interpreter. Returns the number of steps, or
+  /// in a fleet the number until the next event.
+  std::int64_t follow(std::int64_t n, BoundController& bound, const std::string& odometry,
+                      const ReferenceShape& reference) {
     control::GuidedController& controller = bound.controller;
     const Lock lock(*bound_.guarded);
     if (&*bound.flown != &*bound_.guarded) {
@@ -46,24 +52,26 @@ class BoundLoop {
       clocked([&] { controller.command(period, topic, reference, list_times, speeds); });
       saturated_ += controller.saturated();
     };
+    if (bound_.guarded->in_fleet) return loop_.prepare(n, call);
     raising_warnings(*bound_.guarded, [&] { without_gil([&] { loop_.advance(n, call); }); });
+    return n;
   }
 
   /// Advances under a function of Python's, which may read the simulation.
   /// \param function  called without arguments; returns the speeds to command
   /// \param limits    speeds at which a rotor counts as saturated, (width_,) [rad/s]
-  void advance(std::int64_t n, const py::function& function, const py::object& limits) {
-    advance_by(n, limits, [&] { return function(); });
+  std::int64_t advance(std::int64_t n, const py::function& function, const py::object& limits) {
+    return advance_by(n, limits, [&] { return function(); });
   }
 
   /// The same for a function of the time and of the latest odometry.
   /// \param vehicle  object whose function `topic` the odometry passes on
-  void control(std::int64_t n, const py::function& function, const py::object& limits,
-               const std::string& odometry, const py::object& vehicle) {
+  std::int64_t control(std::int64_t n, const py::function& function, const py::object& limits,
+                       const std::string& odometry, const py::object& vehicle) {
     const Simulation& simulation = bound_.guarded->simulation;
     const Topics& topics = simulation.topics();
     const std::size_t topic = control::GuidedController::find_odometry(topics, odometry);
-    advance_by(n, limits, [&] {
+    return advance_by(n, limits, [&] {
       BoundOdometry now{vehicle, topics[topic].stamp, topics.read<messages::Odometry>(topic), {}};
       return function(simulation.time(), std::move(now));
     });
@@ -79,7 +87,7 @@ class BoundLoop {
  private:
   /// \param ask  called without the lock; returns the speeds to command
   template <class Ask>
-  void advance_by(std::int64_t n, const py::object& limits, const Ask& ask) {
+  std::int64_t advance_by(std::int64_t n, const py::object& limits, const Ask& ask) {
     const Numbers most = numbers(limits, 1, "limits");
     check_shape(most, {static_cast<py::ssize_t>(width_)}, "limits");
     const Lock lock(*bound_.guarded);
@@ -93,7 +101,9 @@ class BoundLoop {
       }
       saturated_ += at_limit;
     };
+    if (bound_.guarded->in_fleet) return loop_.prepare(n, call);
     raising_warnings(*bound_.guarded, [&] { loop_.advance(n, call); });
+    return n;
   }
 
   template <class Call>

@@ -58,9 +58,12 @@ std::unique_ptr<BoundFlight> create_flight(const Self& self, const py::object& c
       static_cast<py::ssize_t>(columns(self, topics).size())});
 }
 
-void advance(BoundFlight& bound, std::int64_t n) {
+/// Returns the number of steps taken, or in a fleet the number until the next command.
+std::int64_t advance(BoundFlight& bound, std::int64_t n) {
   const Lock lock(*bound.guarded);
+  if (bound.guarded->in_fleet) return bound.flight.prepare(n);
   raising_warnings(*bound.guarded, [&] { without_gil([&] { bound.flight.advance(n); }); });
+  return n;
 }
 
 /// Return an array that owns the numbers, because a log is too large to copy.
@@ -101,7 +104,8 @@ void bind_flight(py::module_& m) {
            py::arg("log_every"), py::arg("wrenches") = true,
            py::arg("topics") = std::vector<std::string>{})
       .def("advance", &advance, py::arg("n"),
-           "Simulate n steps; raises the same errors as `Simulation.step`.")
+           "Simulate n steps and return their number. In a fleet, publish the command that is due "
+           "and return the number of steps until the next. Raises as `Simulation.step`.")
       .def("take", &take,
            "Return the rows logged since the last call: table (rows, columns) and wrenches (rows, "
            "terms, 6), which are empty unless requested.");

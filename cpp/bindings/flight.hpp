@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "guarded.hpp"
@@ -11,7 +12,8 @@ namespace quadcore::bindings {
 struct BoundFlight {
   std::shared_ptr<Guarded> guarded;
   Flight flight;
-  py::ssize_t columns;  ///< of its table
+  py::ssize_t columns;                    ///< of its table
+  std::function<void()> after_step = {};  ///< what a fleet calls after each step
 };
 
 }  // namespace quadcore::bindings

@@ -23,6 +23,7 @@ namespace py = pybind11;
 struct Guarded {
   Simulation simulation;
   std::atomic<bool> busy{false};
+  bool in_fleet = false;                  ///< whether only a fleet advances it
   std::optional<unsigned long> flown_by;  ///< thread of the present run; protected by the GIL
 
   Guarded(const Model& model, const World& world, const SimulationOptions& options)
@@ -42,6 +43,13 @@ inline void refuse_in_flight(const Guarded& guarded, const char* call) {
       std::string(call) +
       ": this simulation is running, and callbacks may only read it and publish. Return the "
       "command from the callback, and use a separate simulation for predictions.");
+}
+
+/// Throw InputError for a function that a vehicle of a fleet does not have.
+inline void refuse_in_fleet(const Guarded& guarded, const char* call) {
+  if (!guarded.in_fleet) return;
+  throw InputError(std::string(call) + ": this vehicle belongs to a fleet. Use Fleet." + call +
+                   ", which acts on all vehicles.");
 }
 
 class Lock {

@@ -10,6 +10,7 @@ PYBIND11_MODULE(_core, m) {
   quadcore::bindings::bind_simulation(m);
   quadcore::bindings::bind_batch(m);
   quadcore::bindings::bind_flight(m);
+  quadcore::bindings::bind_fleet(m);
   quadcore::bindings::bind_reference(m);
   quadcore::bindings::bind_odometry(m);
   quadcore::bindings::bind_control(m);

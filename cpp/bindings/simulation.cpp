@@ -41,6 +41,7 @@ constexpr char step_count[] = "steps";
 void step(const Self& self, const Given<std::int64_t, step_count>& steps) {
   std::int64_t n = steps.value;
   using Clock = std::chrono::steady_clock;
+  refuse_in_fleet(*self, "step()");
   const Lock lock(*self, "step()");
   // A single step takes less time than releasing and reacquiring the GIL.
   if (n == 1) return raising_warnings(*self, [&] { self->step(); });
@@ -160,6 +161,7 @@ Snapshot
           "restore",
           [](const Self& self, const Built<Snapshot>& snapshot,
              const std::vector<std::string>& allow) {
+            refuse_in_fleet(*self, "restore()");
             const Lock lock(*self, "restore()");
             self->restore(*snapshot, Allowed::of(allow));
           },
@@ -168,6 +170,7 @@ Snapshot
       .def(
           "reset",
           [](const Self& self, const std::optional<std::uint64_t>& seed) {
+            refuse_in_fleet(*self, "reset()");
             const Lock lock(*self, "reset()");
             seed ? self->reset(*seed) : self->reset();
           },
@@ -226,6 +229,9 @@ Snapshot
       .def_property_readonly(
           "wrench_terms", [](const Self& self) { return self->wrench_terms(); },
           "Names of the wrenches that a log can contain, list of str.")
+      .def_property_readonly(
+          "in_fleet", [](const Self& self) { return self.guarded->in_fleet; },
+          "Whether the vehicle belongs to a fleet, which alone advances it.")
       .def("_views", &views)
       .def("_move_by", &move_by, py::arg("motion"));
   bind_rotors(m, simulation);

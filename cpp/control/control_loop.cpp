@@ -14,19 +14,32 @@ ControlLoop::ControlLoop(Simulation& simulation, Flight& flight, double rate, do
 }
 
 void ControlLoop::advance(std::int64_t n, const Call& call) {
-  const double dt = simulation_.dt();
   while (n > 0) {
-    const double* const speeds = schedule_.update(step_, dt, state_.data(), call);
-    if (speeds) {
-      simulation_.command(speeds, width_);
-      commands_.add(speeds);
-    }
-    const double event = schedule_.next_event(step_, dt, state_.data());
-    for (; n > 0 && step_ < event; --n, ++step_) {
+    std::int64_t steps = prepare(n, call);
+    n -= steps;
+    for (; steps > 0; --steps) {
       flight_.advance(1);
-      rates_.add(simulation_.state().rotor_velocity.data());
+      finish();
     }
   }
+}
+
+std::int64_t ControlLoop::prepare(std::int64_t n, const Call& call) {
+  const double dt = simulation_.dt();
+  const double* const speeds = schedule_.update(step_, dt, state_.data(), call);
+  if (speeds) {
+    simulation_.command(speeds, width_);
+    commands_.add(speeds);
+  }
+  const double event = schedule_.next_event(step_, dt, state_.data());
+  std::int64_t steps = 0;
+  while (steps < n && step_ + static_cast<double>(steps) < event) ++steps;
+  return steps;
+}
+
+void ControlLoop::finish() {
+  ++step_;
+  rates_.add(simulation_.state().rotor_velocity.data());
 }
 
 void ControlLoop::list_times(double* times, std::size_t count) const {

@@ -52,6 +52,7 @@ from .thesis import LAGRANGE, LAGRANGE_SUMMARY
 if TYPE_CHECKING:
     from . import autopilots
     from .fmu.export import export_fmu
+    from .simulation.fleet import Fleet
     from .simulation.flight_plan import FlightPlan
     from .simulation.view import View, view
     from .studies.benchmark.flights import Benchmark, benchmark
@@ -80,6 +81,7 @@ __all__ = [
     "EngineName",
     "Evaluation",
     "Fit",
+    "Fleet",
     "FlightError",
     "FlightPlan",
     "InnerLoop",
@@ -128,6 +130,7 @@ _LATE = {
     "Comparison": "studies.compare.result",
     "Evaluation": "studies.evaluate.evaluate",
     "Fit": "studies.fit.fit",
+    "Fleet": "simulation.fleet",
     "FlightPlan": "simulation.flight_plan",
     "Sweep": "studies.sweep.sweep",
     "View": "simulation.view",

@@ -33,7 +33,8 @@ bool is_ahead(double height, const Vector3d& v_W, const Vector3d& w_W, double gr
   World grounded;
   grounded.ground_plane = true;
   grounded.gravity_W.z() = gravity_z;
-  return WorldContact(boxed(), bodies, grounded).is_ahead(0.1);
+  const Model vehicle = boxed();
+  return WorldContact({&vehicle}, bodies, grounded).is_ahead(0.1);
 }
 
 /// Whether the box is seen ahead just below a height, and not just above.

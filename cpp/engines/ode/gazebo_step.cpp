@@ -40,9 +40,11 @@ GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hi
   const auto is_simple = [&](const Hinge& hinge) {
     return options.rows.cfm == 0 && hinge.friction == 0 && hinge.implicit_damping == 0;
   };
-  const std::size_t of_vehicle = vehicle - 1;  // all but the frame hang on one
-  const auto last = all.begin() + static_cast<std::ptrdiff_t>(of_vehicle);
-  if (std::all_of(all.begin(), last, is_simple)) simple_hinges_ = of_vehicle;
+  const auto last = std::find_if(all.begin(), all.end(),
+                                 [&](const Hinge& hinge) { return hinge.child >= vehicle; });
+  if (std::all_of(all.begin(), last, is_simple)) {
+    simple_hinges_ = static_cast<std::size_t>(last - all.begin());
+  }
   reserve(0);
 }
 

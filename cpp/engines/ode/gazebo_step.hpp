@@ -39,7 +39,7 @@ class GazeboStep {
   };
 
   /// Bodies, hinges and their order as in ConstraintRows.
-  /// \param vehicle  number of bodies of the vehicle, which are the first; its hinges are the first
+  /// \param vehicle  number of bodies of the vehicles, which are the first; so are their hinges
   GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
              const std::vector<std::size_t>& order, const Options& options, std::size_t vehicle);
 
@@ -104,7 +104,7 @@ class GazeboStep {
   std::vector<Sweeps::Solved*> solved_;  ///< entry of each row in sweeps_
   std::vector<int> place_;               ///< index of each row among the rows of sweeps_
   std::vector<Prepared> prepared_;       ///< data of each row
-  std::size_t vehicle_;                  ///< number of the vehicle's bodies
+  std::size_t vehicle_;                  ///< number of the vehicles' bodies
   std::size_t simple_hinges_ = 0;   ///< number of the first hinges with only Sweeps::Hinge rows
   std::size_t friction_begin_ = 0;  ///< first friction row in the order of sweeps_
 };

@@ -33,6 +33,15 @@ double max_hinge_correction(const World& world, const OdeRecipe& recipe) {
 
 }  // namespace
 
+GazeboStep::Options gazebo_options(const World& world, const OdeRecipe& recipe,
+                                   std::vector<GazeboStep::Damping> damping) {
+  return {world.solver_iterations,
+          world.solver_sor,
+          world.gravity_W,
+          {world.erp, world.cfm, max_hinge_correction(world, recipe)},
+          std::move(damping)};
+}
+
 bool is_clear_of_contact(const std::vector<double>& saved) {
   return saved.back() >= steps_beside_contact;
 }
@@ -60,9 +69,10 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   all_bodies_.insert(all_bodies_.end(), free_->bodies().begin(), free_->bodies().end());
   create_step(world);
   if (world.ground_plane || !world.obstacles.empty() || !free_->empty()) {
-    contact_ = std::make_unique<WorldContact>(bodies_.model, all_bodies_, world);
+    contact_ = std::make_unique<WorldContact>(std::vector<const Model*>{&bodies_.model},
+                                              all_bodies_, world);
     gazebo_step_->reserve(contact_->most_on_ground());
-    if (rubs_) vehicle_->report_hinge_forces();
+    expect_contact();
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     kinematics_.rotors.set_matrix(MotionRow::R_FR_at_zero, i,
@@ -87,14 +97,9 @@ void OdeEngine::create_step(const World& world) {
   std::vector<std::size_t> order(free_->bodies().size());
   std::iota(order.begin(), order.end(), vehicle);
   for (const std::size_t body : sdf_order(bodies_.model)) order.push_back(body);
-  gazebo_step_ = std::make_unique<GazeboStep>(
-      all_bodies_, std::move(hinges), order,
-      GazeboStep::Options{world.solver_iterations,
-                          world.solver_sor,
-                          world.gravity_W,
-                          {world.erp, world.cfm, max_hinge_correction(world, recipe_)},
-                          damping},
-      vehicle);
+  gazebo_step_ =
+      std::make_unique<GazeboStep>(all_bodies_, std::move(hinges), order,
+                                   gazebo_options(world, recipe_, std::move(damping)), vehicle);
 }
 
 /// Decide once whether to use the world's sweeps in flight.
@@ -155,15 +160,28 @@ void OdeEngine::take_threading() {
       world_.get(), dThreadingImplementationGetFunctions(threading_.get()), threading_.get());
 }
 
+void OdeEngine::expect_contact() {
+  may_touch_ = true;
+  if (rubs_) vehicle_->report_hinge_forces();
+}
+
 void OdeEngine::step(double time, double dt, const ForceField& forces) {
+  evaluate(time, forces);
+  move(dt, false);
+}
+
+void OdeEngine::evaluate(double time, const ForceField& forces) {
   kinematics_.time = time;
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
   if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE would end the process
-  if (is_afloat(dt) && float_by(dt)) {
+}
+
+void OdeEngine::move(double dt, bool near) {
+  if (!near && is_afloat(dt) && float_by(dt)) {
     step_free(dt);
   } else {
-    step_in_ode(dt);
+    step_in_ode(dt, near);
   }
   hinged_.show(kinematics_);
 }
@@ -179,8 +197,8 @@ bool OdeEngine::float_by(double dt) {
 /// Return whether this step does not require the bodies in ODE.
 bool OdeEngine::is_afloat(double dt) const {
   if (!may_float_ || loads_.any_rate()) return false;
-  if (!contact_) return true;
   if (steps_since_contact_ < steps_beside_contact) return false;
+  if (!contact_) return true;
   const double time = steps_beside_contact * dt;
   if (!contact_->is_clear(hinged_.position(), hinged_.velocity(), time)) return false;
   if (!contact_->has_ground()) return true;
@@ -190,15 +208,14 @@ bool OdeEngine::is_afloat(double dt) const {
                      });
 }
 
-/// Update the bodies in ODE.
 void OdeEngine::settle() const {
   if (!behind_) return;
   hinged_.give(vehicle_->bodies());
-  if (contact_) remember_hinge_forces();
+  if (may_touch_) remember_hinge_forces();
   behind_ = false;
 }
 
-void OdeEngine::step_in_ode(double dt) {
+void OdeEngine::push(double dt) {
   start_ode();
   settle();
   vehicle_->apply(loads_, kinematics_, dt);
@@ -210,15 +227,25 @@ void OdeEngine::step_in_ode(double dt) {
     }
   }
   recipe_.add_gyroscopic(*gyroscopic_, dt);
+}
+
+void OdeEngine::take_motion() {
+  steps_since_contact_ = 0;
+  hinged_.take(vehicle_->bodies());
+  hinged_.show(kinematics_);
+}
+
+void OdeEngine::step_in_ode(double dt, bool near) {
+  push(dt);
   static const std::vector<Contact> none;
   const std::vector<Contact>& contacts = contact_ ? contact_->find(gazebo_step_->asleep) : none;
   gazebo_step_->reserve(contacts.size());
   free_->push();
   put_to_sleep(contacts, dt);
-  if (iterate_ || is_near_contact(dt, touches_vehicle(contacts))) {
+  if (iterate_ || is_near_contact(dt, touches_vehicle(contacts), near)) {
     gazebo_step_->step(contacts, dt);
   } else if (solve(dt)) {
-    if (contact_) remember_hinge_forces();
+    if (may_touch_) remember_hinge_forces();
     vehicle_->damp();
     if (!free_->empty()) gazebo_step_->step_free(contacts, dt);
   } else {
@@ -256,12 +283,13 @@ bool OdeEngine::touches_vehicle(const std::vector<Contact>& contacts) const {
 
 /// Return whether this step has contacts or follows such a step within the limit of Gazebo's
 /// sweeps.
-bool OdeEngine::is_near_contact(double dt, bool touching) {
-  if (!contact_) return false;
+bool OdeEngine::is_near_contact(double dt, bool touching, bool near) {
+  if (!may_touch_) return false;
   const bool after = steps_since_contact_ < steps_beside_contact;
   steps_since_contact_ = touching ? 0 : std::min(steps_since_contact_ + 1, steps_beside_contact);
   if (touching) return true;
-  return recipe_.like_gazebo && (after || contact_->is_ahead(steps_beside_contact * dt));
+  if (!recipe_.like_gazebo) return false;
+  return after || near || (contact_ && contact_->is_ahead(steps_beside_contact * dt));
 }
 
 /// Take a step in flight; returns false if Gazebo limits the correction of a hinge. If ODE fails

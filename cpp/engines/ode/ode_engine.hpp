@@ -28,6 +28,10 @@ extern const OdeRecipe gazebo11_recipe;
 /// The same world without Gazebo's errors.
 extern const OdeRecipe ode_recipe;
 
+/// Return the settings of the sweeps in a world.
+GazeboStep::Options gazebo_options(const World& world, const OdeRecipe& recipe,
+                                   std::vector<GazeboStep::Damping> damping);
+
 /// Return whether a saved state of an engine has no recent contact.
 bool is_clear_of_contact(const std::vector<double>& saved);
 
@@ -54,6 +58,27 @@ class OdeEngine final : public Engine {
   /// Return the reach of its shapes, if the world has anything to touch.
   const std::vector<Reach>& reaches() const { return contact_->reaches(); }
 
+  /// \name Parts of a step, for contact with other vehicles and free bodies
+  /// @{
+  /// Prepare for contact that is not with the ground or an obstacle.
+  void expect_contact();
+  /// Evaluate the forces of a step.
+  void evaluate(double time, const ForceField& forces);
+  /// Finish a step in which this vehicle touches no other and no free body.
+  /// \param near  whether it may touch one within the next steps
+  void move(double dt, bool near);
+  /// Update the bodies in ODE.
+  void settle() const;
+  /// Add the forces of a step to the bodies in ODE.
+  void push(double dt);
+  /// Take over the motion of the bodies in ODE after a step in contact.
+  void take_motion();
+  const OdeRecipe& recipe() const { return recipe_; }
+  const HingedVehicle& hinged() const { return hinged_; }
+  const OdeVehicle& vehicle() const { return *vehicle_; }
+  std::vector<GazeboStep::WarmStart>& warm_start() { return gazebo_step_->warm_start; }
+  /// @}
+
  private:
   struct FreeThreading {
     void operator()(dxThreadingImplementation* own) const { dThreadingFreeImplementation(own); }
@@ -68,13 +93,12 @@ class OdeEngine final : public Engine {
   void take_threading();
   bool is_afloat(double dt) const;
   bool float_by(double dt);
-  void settle() const;
-  void step_in_ode(double dt);
+  void step_in_ode(double dt, bool near);
   void step_free(double dt);
   bool touches_vehicle(const std::vector<Contact>& contacts) const;
   void put_to_sleep(const std::vector<Contact>& contacts, double dt);
   bool solve(double dt);
-  bool is_near_contact(double dt, bool touching);
+  bool is_near_contact(double dt, bool touching, bool near);
   void remember_hinge_forces() const;
   void forget_hinge_forces();
   void show();
@@ -95,6 +119,7 @@ class OdeEngine final : public Engine {
   HingedVehicle hinged_;    ///< same motion as the bodies in ODE, possibly ahead of them
   mutable bool behind_ = false;            ///< whether the bodies in ODE are behind hinged_
   std::unique_ptr<WorldContact> contact_;  ///< null in a world without ground and obstacles
+  bool may_touch_ = false;                 ///< whether there is anything to touch
   int steps_since_contact_;                ///< counted only as far as it matters
   std::unique_ptr<FreeBodies> free_;
   std::vector<dBodyID> all_bodies_;  ///< those of the vehicle, then the free ones

@@ -1,12 +1,10 @@
 #include "world_contact.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
 #include "contact_surface.hpp"
 #include "ode_math.hpp"
-#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 namespace {
@@ -14,50 +12,8 @@ namespace {
 /// Number of points for which Gazebo 11 asks the collider of a pair.
 constexpr int most_points = 250;
 
-/// Return the geom of a box, cylinder or sphere, or null.
-dGeomID create_geom(ShapeKind kind, const Vector3d& size) {
-  switch (kind) {
-    case ShapeKind::box:
-      return dCreateBox(nullptr, size.x(), size.y(), size.z());
-    case ShapeKind::cylinder:
-      return dCreateCylinder(nullptr, size.x(), size.y());
-    case ShapeKind::sphere:
-      return dCreateSphere(nullptr, size.x());
-    default:
-      return nullptr;
-  }
-}
-
-dGeomID create_shape(const Collision& collision) {
-  if (const dGeomID geom = create_geom(collision.kind, collision.size)) return geom;
-  throw InputError(collision.where +
-                   ": contact of a collision mesh with the ground is not modelled. Use a box, "
-                   "cylinder or sphere, or a world without ground.");
-}
-
-/// Return the geom of triangles, which must outlive it.
-dGeomID create_mesh(const TriangleMesh& mesh) {
-  const dTriMeshDataID data = dGeomTriMeshDataCreate();
-  dGeomTriMeshDataBuildSingle(
-      data, mesh.vertices.data(), sizeof mesh.vertices[0], static_cast<int>(mesh.vertices.size()),
-      mesh.triangles.data(), static_cast<int>(3 * mesh.triangles.size()), sizeof mesh.triangles[0]);
-  return dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr);
-}
-
-/// Return the geom of an obstacle at its place.
-dGeomID create_solid(const Obstacle& obstacle) {
-  const Vector3d &size = obstacle.size, &p = obstacle.position_W;
-  if (obstacle.kind == ShapeKind::plane) {
-    return dCreatePlane(nullptr, size.x(), size.y(), size.z(), p.z());
-  }
-  const dGeomID geom = obstacle.kind == ShapeKind::mesh ? create_mesh(*obstacle.mesh)
-                                                        : create_geom(obstacle.kind, size);
-  const Quaterniond& q = obstacle.orientation_W;
-  const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
-  dGeomSetPosition(geom, p.x(), p.y(), p.z());
-  dGeomSetQuaternion(geom, ode_q);
-  return geom;
-}
+/// Bounds of a model that touches nothing.
+constexpr Bounds nowhere = {dInfinity, -dInfinity, dInfinity, -dInfinity, dInfinity, -dInfinity};
 
 Obstacle create_ground(const Surface& surface) {
   Obstacle ground;
@@ -66,23 +22,6 @@ Obstacle create_ground(const Surface& surface) {
   ground.size = Vector3d::UnitZ();
   ground.surface = surface;
   return ground;
-}
-
-/// Return an upper bound of the distance of a model's shapes from the frame's centre of mass [m].
-double reach_of_shapes(const Model& model) {
-  std::vector<double> arms(model.links.size());  // of the origins from the frame's
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    const Joint& joint = model.joints[i];
-    arms[i + 1] = arms[joint.parent] + joint.pose.xyz.norm();
-  }
-  double reach = 0;
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    for (const Collision& collision : model.links[i].collisions) {
-      reach = std::max(reach, arms[i] + collision.pose.xyz.norm() +
-                                  outer_radius(collision.kind, collision.size));
-    }
-  }
-  return reach + model.links[0].inertial.pose.xyz.norm();
 }
 
 Bounds bounds_of(dGeomID geom) {
@@ -104,14 +43,30 @@ int keep_points(std::vector<dContactGeom>& points, int found, int most) {
 
 }  // namespace
 
-WorldContact::WorldContact(const Model& model, const std::vector<dBodyID>& bodies,
-                           const World& world)
+double reach_of_shapes(const Model& model) {
+  std::vector<double> arms(model.links.size());  // of the origins from the frame's
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    arms[i + 1] = arms[joint.parent] + joint.pose.xyz.norm();
+  }
+  double reach = 0;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    for (const Collision& collision : model.links[i].collisions) {
+      reach = std::max(reach, arms[i] + collision.pose.xyz.norm() +
+                                  outer_radius(collision.kind, collision.size));
+    }
+  }
+  return reach + model.links[0].inertial.pose.xyz.norm();
+}
+
+WorldContact::WorldContact(const std::vector<const Model*>& vehicles,
+                           const std::vector<dBodyID>& bodies, const World& world)
     : bodies_(bodies),
       gravity_W_(world.gravity_W),
       max_correction_(world.contact_max_correcting_vel),
       max_contacts_(world.max_contacts),
       has_ground_(world.ground_plane),
-      reach_(reach_of_shapes(model)),
+      reach_(reach_of_shapes(*vehicles.front())),
       clear_ball_(world.obstacles),
       touching_(most_points) {
   std::string last;
@@ -130,10 +85,17 @@ WorldContact::WorldContact(const Model& model, const std::vector<dBodyID>& bodie
   }
   order_ = std::make_unique<PairOrder>(boxes);
   still_ = models_.size();
-  add_free_bodies(world, model.links.size());
-  models_.emplace_back();
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    for (const Collision& collision : model.links[i].collisions) add_shape(collision, model, i);
+  std::size_t first_free = 0;
+  for (const Model* const model : vehicles) first_free += model->links.size();
+  add_free_bodies(world, first_free);
+  first_vehicle_ = models_.size();
+  std::size_t body = 0;
+  for (const Model* const model : vehicles) {
+    models_.emplace_back();
+    for (const Link& link : model->links) {
+      for (const Collision& collision : link.collisions) add_shape(collision, link, body);
+      ++body;
+    }
   }
   contacts_.reserve(most_on_ground());
   moving_.reserve(models_.size() - still_);
@@ -149,7 +111,7 @@ std::size_t WorldContact::most_on_ground() const {
 }
 
 void WorldContact::add_obstacle(const Obstacle& obstacle) {
-  Geom geom(create_solid(obstacle));
+  Geom geom = create_solid(obstacle);
   const Bounds box = bounds_of(geom.get());
   models_.back().push_back({std::move(geom), -1, obstacle.surface, obstacle.slip1, obstacle.slip2,
                             obstacle.restitution, obstacle.restitution_speed, obstacle.mesh, box});
@@ -171,7 +133,7 @@ void WorldContact::add_free_bodies(const World& world, std::size_t first) {
       Surface surface = given.surface;
       surface.max_vel = free.shapes.back().surface.max_vel;
       surface.min_depth = free.shapes.back().surface.min_depth;
-      Geom geom(create_solid(given));
+      Geom geom = create_solid(given);
       const Vector3d p = given.position_W;
       const Quaterniond& q = given.orientation_W;
       const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
@@ -192,20 +154,20 @@ void WorldContact::add_free_bodies(const World& world, std::size_t first) {
   }
 }
 
-void WorldContact::add_shape(const Collision& collision, const Model& model, std::size_t link) {
-  const dGeomID geom = create_shape(collision);
+void WorldContact::add_shape(const Collision& collision, const Link& link, std::size_t body) {
+  Geom geom = create_shape(collision);
   Surface surface = collision.surface;
   // Gazebo's ODE stores these two per body, so the values of the last shape count.
-  surface.max_vel = model.links[link].collisions.back().surface.max_vel;
-  surface.min_depth = model.links[link].collisions.back().surface.min_depth;
-  vehicle().push_back({Geom(geom), static_cast<int>(link), surface});
-  const Vector3d p_cm = collision.pose.xyz - model.links[link].inertial.pose.xyz;
+  surface.max_vel = link.collisions.back().surface.max_vel;
+  surface.min_depth = link.collisions.back().surface.min_depth;
+  const Vector3d p_cm = collision.pose.xyz - link.inertial.pose.xyz;
   const Quaterniond q = collision.pose.rotation();
   const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
-  reaches_.push_back({link, p_cm.norm() + outer_radius(collision.kind, collision.size)});
-  dGeomSetBody(geom, bodies_[link]);
-  dGeomSetOffsetPosition(geom, p_cm.x(), p_cm.y(), p_cm.z());
-  dGeomSetOffsetQuaternion(geom, ode_q);
+  reaches_.push_back({body, p_cm.norm() + outer_radius(collision.kind, collision.size)});
+  dGeomSetBody(geom.get(), bodies_[body]);
+  dGeomSetOffsetPosition(geom.get(), p_cm.x(), p_cm.y(), p_cm.z());
+  dGeomSetOffsetQuaternion(geom.get(), ode_q);
+  models_.back().push_back({std::move(geom), static_cast<int>(body), surface});
 }
 
 const std::vector<Contact>& WorldContact::find(const std::vector<char>& asleep) {
@@ -226,9 +188,21 @@ const std::vector<Contact>& WorldContact::find_free(const std::vector<char>& asl
   return find_pairs();
 }
 
+const std::vector<Contact>& WorldContact::find_among(const std::vector<char>& vehicles,
+                                                     const std::vector<char>& asleep) {
+  contacts_.clear();
+  find_free_bounds(asleep);
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    Shapes& shapes = models_[first_vehicle_ + i];
+    const bool is_there = vehicles[i] && !shapes.empty();
+    moving_.push_back(is_there ? find_bounds(shapes, asleep) : MovingModel{nowhere});
+  }
+  return find_pairs();
+}
+
 void WorldContact::find_free_bounds(const std::vector<char>& asleep) {
   moving_.clear();
-  for (std::size_t i = still_; i + 1 < models_.size(); ++i) {
+  for (std::size_t i = still_; i < first_vehicle_; ++i) {
     moving_.push_back(find_bounds(models_[i], asleep));
   }
 }
@@ -332,14 +306,21 @@ bool WorldContact::is_obstacle_ahead(double time) {
 }
 
 bool WorldContact::is_clear(const Vector3d& p_WFcm, const Vector3d& v_WFcm_W, double time) {
+  if (!is_clear_of_free(p_WFcm, v_WFcm_W, reach_, time)) return false;
+  if (clear_ball_.is_empty()) return true;
+  const double fallen = gravity_W_.norm() * time * time / 2;
+  return clear_ball_.is_free(p_WFcm, reach_ + fallen + time * v_WFcm_W.norm());
+}
+
+bool WorldContact::is_clear_of_free(const Vector3d& p_WFcm, const Vector3d& v_WFcm_W, double reach,
+                                    double time) const {
   const double fallen = gravity_W_.norm() * time * time / 2;
   for (const Ball& ball : balls_) {
     const Vector3d away_W = vec(dBodyGetPosition(ball.body)) - p_WFcm;
     const double closer = time * (v_WFcm_W - vec(dBodyGetLinearVel(ball.body))).norm();
-    if (!(away_W.norm() > reach_ + ball.radius + 2 * fallen + closer)) return false;
+    if (!(away_W.norm() > reach + ball.radius + 2 * fallen + closer)) return false;
   }
-  if (clear_ball_.is_empty()) return true;
-  return clear_ball_.is_free(p_WFcm, reach_ + fallen + time * v_WFcm_W.norm());
+  return true;
 }
 
 bool WorldContact::is_ground_ahead(double time) const {

@@ -9,6 +9,7 @@
 
 #include "clear_ball.hpp"
 #include "constraint_rows.hpp"
+#include "geoms.hpp"
 #include "pair_order.hpp"
 #include "quadcore/plugin/model.hpp"
 #include "quadcore/plugin/world.hpp"
@@ -21,14 +22,18 @@ struct Reach {
   double length;
 };
 
-/// Finds contacts of a vehicle and of free bodies with each other, the ground plane and the
+/// Return an upper bound of the distance of a model's shapes from the frame's centre of mass [m].
+double reach_of_shapes(const Model& model);
+
+/// Finds contacts of vehicles and of free bodies with each other, the ground plane and the
 /// obstacles of a world, in Gazebo 11's order. Links of one model do not collide with each other,
 /// unless the world says so.
 class WorldContact {
  public:
-  /// \param bodies  one per link of the vehicle, then the free bodies, each at its centre of mass.
+  /// \param bodies  one per link of each vehicle, then the free bodies, each at its centre of mass.
   /// Throws InputError for a shape without contact model (a mesh).
-  WorldContact(const Model& model, const std::vector<dBodyID>& bodies, const World& world);
+  WorldContact(const std::vector<const Model*>& vehicles, const std::vector<dBodyID>& bodies,
+               const World& world);
 
   /// Return the maximum number of points with the ground alone.
   std::size_t most_on_ground() const;
@@ -37,30 +42,28 @@ class WorldContact {
   /// Return whether there is a ground plane.
   bool has_ground() const { return has_ground_; }
 
-  /// Return the contacts of the present poses.
+  /// Return the contacts of the present poses in a world with one vehicle.
   /// \param asleep  whether each body sleeps
   const std::vector<Contact>& find(const std::vector<char>& asleep);
   /// Return those without the vehicle.
   const std::vector<Contact>& find_free(const std::vector<char>& asleep);
+  /// Return those of the free bodies and some vehicles.
+  /// \param vehicles  whether each vehicle takes part
+  const std::vector<Contact>& find_among(const std::vector<char>& vehicles,
+                                         const std::vector<char>& asleep);
 
-  /// Return whether a shape may be in the ground or an obstacle within `time` [s] at the present
-  /// velocities. Shapes of rotors are treated as turning only with the frame.
+  /// Return whether a shape of the only vehicle may be in the ground or an obstacle within `time`
+  /// [s] at the present velocities. Shapes of rotors are treated as turning only with the frame.
   bool is_ahead(double time);
   /// Return whether the vehicle does not touch an obstacle, apart from the ground plane, within
   /// `time` [s].
   /// \param p_WF, v_WF_W  position and velocity of the frame's centre of mass
   bool is_clear(const Vector3d& p_WFcm, const Vector3d& v_WFcm_W, double time);
+  /// Return the same for the free bodies alone and shapes that reach so far [m].
+  bool is_clear_of_free(const Vector3d& p_WFcm, const Vector3d& v_WFcm_W, double reach,
+                        double time) const;
 
  private:
-  struct DestroyGeom {
-    void operator()(dxGeom* geom) const {
-      const dTriMeshDataID data =
-          dGeomGetClass(geom) == dTriMeshClass ? dGeomTriMeshGetData(geom) : nullptr;
-      dGeomDestroy(geom);
-      if (data) dGeomTriMeshDataDestroy(data);
-    }
-  };
-  using Geom = std::unique_ptr<dxGeom, DestroyGeom>;
   /// A collision shape of a body, or of an obstacle.
   struct Shape {
     Geom geom;
@@ -80,7 +83,7 @@ class WorldContact {
 
   void add_obstacle(const Obstacle& obstacle);
   void add_free_bodies(const World& world, std::size_t first);
-  void add_shape(const Collision& collision, const Model& model, std::size_t link);
+  void add_shape(const Collision& collision, const Link& link, std::size_t body);
   MovingModel find_bounds(Shapes& shapes, const std::vector<char>& asleep) const;
   void find_free_bounds(const std::vector<char>& asleep);
   const std::vector<Contact>& find_pairs();
@@ -98,9 +101,10 @@ class WorldContact {
   double max_correction_;
   int max_contacts_;
   bool has_ground_;
-  std::size_t still_ = 0;       ///< number of the models that stand still
-  std::vector<Shapes> models_;  ///< obstacles, the newest shape first; free models; the vehicle
-  std::vector<Ball> balls_;     ///< of the free bodies
+  std::size_t still_ = 0;          ///< number of the models that stand still
+  std::size_t first_vehicle_ = 0;  ///< index of the first vehicle among the models
+  std::vector<Shapes> models_;     ///< obstacles, the newest shape first; free models; vehicles
+  std::vector<Ball> balls_;        ///< of the free bodies
   std::set<std::pair<int, int>> joined_;  ///< free bodies that a joint connects
   std::vector<Reach> reaches_;
   double reach_ = 0;  ///< reach of all shapes from the frame's centre of mass [m]

@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import argparse
-import os
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Sequence
 
 from .._core import InputError, QuadcoreError
-from ..formats.rows import Recorder
-from ..simulation.clearance import Clearance
 from ..simulation.controller_pilot import convert_controller_errors
 from ..simulation.engines import check_wrenches, list_engines
-from ..simulation.flight import count_steps, fly, list_columns
-from ..simulation.log import check_log_path, make_log_file
-from ..simulation.recording import DecimatedRows, FastestRotor, Recording, TrackingError
+from ..simulation.flight import fly
 from ..studies.flight_folder import DOCUMENT
-from ..studies.options import OUTPUT
+from ..studies.options import OUTPUT, VEHICLE
 from ..studies.output_folder import output_folder
 from ..support import interrupts, parse
-from . import options, reading, run_folder, terminal
-from .command_checks import warn_of_commands, warn_of_yaw_zero
+from . import options, reading, run_fleet, run_folder, terminal
 from .parser import add_command, find_group
-from .run_summary import describe_result, summarize
+from .run_summary import describe_result
+from .run_vehicle import RunVehicle, print_result
 
 if TYPE_CHECKING:
     from ..simulation.flight_plan import FlightPlan
@@ -42,10 +37,21 @@ def register(commands: Any) -> None:
         run_flight,
         """
         quadcore run quadrotor --controller geometric --reference spiral --out out/spiral
+        quadcore run --duration 5 --model quadrotor --spawn 0,0,1 --model iris --spawn 0,0,3
         quadcore run hummingbird --world basic --controller mine.py --wind 3,0,0 --log mine.csv
         """,
     )
-    options.add_model(parser)
+    options.add_model(parser, nargs="?")
+    find_group(parser, VEHICLE).add_argument(
+        run_fleet.MODEL,
+        dest="models",
+        metavar="MODEL",
+        action="append",
+        default=[],
+        help="one of several vehicles in one world; the options that follow are for this vehicle, "
+        "those before the first --model for all; repeatable",
+    )
+    parser.set_defaults(parser=parser)
     options.add_flight(parser, choices=list_engines())
     options.add_commands(parser)
     options.add_controller(parser)
@@ -81,6 +87,10 @@ def register(commands: Any) -> None:
 
 def run_flight(arguments: argparse.Namespace) -> None:
     """Simulate, write what was asked for, and print a summary."""
+    if arguments.models:
+        return run_fleet.run_fleet(arguments)
+    if arguments.model is None:
+        arguments.parser.error("the following arguments are required: MODEL")
     if arguments.wrenches:
         check_wrenches(arguments.engine)
     if arguments.pace is not None and not arguments.live:
@@ -90,33 +100,16 @@ def run_flight(arguments: argparse.Namespace) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    out = arguments.out
     plan = reading.make_flight_plan(arguments)
     if arguments.record is not None:
         _record_session(plan, arguments)
     simulation = plan.simulation()
-    pilot = plan.pilot(simulation)
-    columns = list_columns(simulation, plan.topics, pilot)
-    fastest, drawn, errors = FastestRotor(simulation), None, None
-    clearance = Clearance(plan.model, plan.world)
-    others: list[Recorder] = [fastest, clearance]
-    if pilot is not None:
-        errors = TrackingError(columns)
-        others.append(errors)
-    terms = simulation.wrench_terms if arguments.wrenches else []
-    if out is not None:
-        steps = count_steps(plan.duration, simulation.dt)
-        drawn = DecimatedRows(1 + steps // plan.log_every, columns, terms)
-        others.append(drawn)
-    files = _check_log_files(arguments)
-    logs = [make_log_file(file, columns, terms, simulation.ignored) for file in files]
-    described = []
-    if out is not None:
-        described = run_folder.write_description(arguments, plan, simulation)
-    view = _open_view(arguments, plan, simulation, columns) if arguments.live else None
-    if view is not None:
-        others.append(view)
-    recording = Recording(logs, others)
+    vehicle = RunVehicle(arguments, plan, simulation)
+    view = None
+    if arguments.live:
+        view = _open_view(arguments, plan, simulation, vehicle.columns)
+        vehicle.recorders.append(view)
+    recording = vehicle.open_recording()
     started = time.perf_counter()
     try:
         with terminal.show_progress(arguments.quiet) as progress, convert_controller_errors(
@@ -130,39 +123,30 @@ def _run(arguments: argparse.Namespace) -> None:
                 recording.receive,
                 recording.wrenches,
                 progress,
-                pilot,
+                vehicle.pilot,
                 plan.topics,
                 _choose_pace(arguments),
             )
     except (QuadcoreError, KeyboardInterrupt, MemoryError) as error:
         with interrupts.hold_signals():
-            for file in recording.close():
-                terminal.print_message(f"log until t = {fastest.time:.6g} s: {file}")
+            vehicle.keep_logs()
         if view is not None and isinstance(error, QuadcoreError):
             view.page.wait_for_pages(_PATIENCE)
         raise
     elapsed = time.perf_counter() - started
     with interrupts.hold_signals():
-        files = recording.close()
-    result = summarize(arguments, plan, simulation, fastest, clearance, elapsed, pilot, errors)
+        logs = recording.close()
+    result = vehicle.summarize(elapsed)
     rows = describe_result(result)
-    if drawn is not None:
-        files += described
-        files += run_folder.write_results(arguments, plan, simulation, drawn.log(), rows)
+    files = vehicle.write_results(logs, rows)
     if arguments.json:
         terminal.print_json({**result, "files": [str(file) for file in files]})
     elif not arguments.quiet:
-        rows += [("" if i else "written", str(file)) for i, file in enumerate(files)]
-        table = terminal.make_table("", "", show_header=False)
-        for row in rows:
-            table.add_row(*row)
-        terminal.make_console().print(table)
+        print_result(rows, files)
     if view is not None:
         view.page.wait_for_pages(_PATIENCE)
     recording.check()
-    warn_of_commands(simulation, plan)
-    if errors is not None:
-        warn_of_yaw_zero(simulation, errors.max)
+    vehicle.warn()
 
 
 def _open_view(
@@ -194,15 +178,3 @@ def _choose_pace(arguments: argparse.Namespace) -> float:
     if not arguments.live:
         return 0.0
     return 1.0 if arguments.pace is None else float(arguments.pace)
-
-
-def _check_log_files(arguments: argparse.Namespace) -> list[Path]:
-    """Name the logs to write, and check now that they can be written after the flight."""
-    files = list(arguments.log)
-    if arguments.out is not None:
-        files.insert(0, arguments.out / run_folder.LOG)
-    for i, file in enumerate(files):
-        check_log_path(file)
-        if os.path.realpath(file) in [os.path.realpath(other) for other in files[:i]]:
-            raise InputError(f"{file}: would be written twice. Name each log once.")
-    return files

@@ -106,6 +106,12 @@ def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
         collisions = [Encounter(**collision) for collision in result["collisions"]]
         first = f", the first with {collisions[0]}" if collisions else ""
         rows.append(("collisions", f"{len(collisions)}{first}"))
+    if "vehicle_clearance" in result:
+        other = Encounter(**result["nearest_vehicle"])
+        rows.append(("nearest vehicle", f"{result['vehicle_clearance']:.4g} m from {other}"))
+        meetings = [Encounter(**each) for each in result["vehicle_collisions"]]
+        first = f", the first with {meetings[0]}" if meetings else ""
+        rows.append(("collisions with vehicles", f"{len(meetings)}{first}"))
     if "saturated_steps" in result:
         rows.append(("saturated steps", str(result["saturated_steps"])))
     if "controller" in result:

@@ -155,8 +155,8 @@ class ControllerPilot(ReferencePilot):
         if close is not None:
             close()
 
-    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], None]:
-        """Return the function that advances a flight by a number of steps.
+    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], int]:
+        """Return the function that advances a flight; see `Pilot.begin`.
 
         A built-in controller on a built-in reference runs in the core, without the interpreter.
         """

@@ -49,8 +49,12 @@ class Pilot:
     def reset(self, simulation: Any) -> None:
         """Prepare for a flight; the simulation is at its first step."""
 
-    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], None]:
-        """Return the function that advances a flight by a number of steps."""
+    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], int]:
+        """Return the function that advances a flight by a number of steps, and returns it.
+
+        For a vehicle of a fleet, the function publishes the command that is due, and returns the
+        number of steps until the next one.
+        """
         loop = _core.ControlLoop(flight, self.rate, self.delay)
         limits = np.full(simulation.command_width, np.inf)
         return lambda steps: loop.advance(steps, lambda: self.speeds(simulation), limits)
@@ -107,15 +111,17 @@ def fly(
     FlightError
         If the flight fails, or the pilot returns no valid command.
     """
+    if simulation.in_fleet:
+        raise _core.InputError("run(): this vehicle belongs to a fleet. Use Fleet.run.")
     if wrenches:
         check_wrenches(simulation.engine)
     total = count_steps(duration, simulation.dt)
-    log_every = _check_log_every(log_every)
+    log_every = check_log_every(log_every)
     table = None if commands is None else check_commands(commands, simulation.command_width)
     wrenches = wrenches and len(simulation.wrench_terms) > 0
     moves = pilot is not None and pilot.moves
     run = nullcontext() if moves else _core.Run(simulation)
-    with nullcontext() if pilot is None else _close_at_end(pilot):
+    with nullcontext() if pilot is None else close_at_end(pilot):
         if pilot is not None:
             pilot.reset(simulation)  # which may yet put the vehicle where it is to begin
         with run:
@@ -142,7 +148,7 @@ class _Pace:
 
 
 @contextmanager
-def _close_at_end(pilot: Pilot) -> Iterator[None]:
+def close_at_end(pilot: Pilot) -> Iterator[None]:
     """Close the pilot after the block, however it ends; interrupts wait until that is done."""
     try:
         yield
@@ -293,7 +299,7 @@ def count_steps(duration: float, dt: float) -> int:
     return steps
 
 
-def _check_log_every(log_every: object) -> int:
+def check_log_every(log_every: object) -> int:
     """Return the number of steps between rows; raises `InputError` if it is not valid."""
     is_whole = isinstance(log_every, (int, np.integer)) and not isinstance(log_every, bool)
     if not is_whole or not 1 <= log_every < 2**63:  # type: ignore[operator]
@@ -304,7 +310,7 @@ def _check_log_every(log_every: object) -> int:
 def check_log_length(duration: float, dt: float, log_every: int) -> None:
     """Raise `InputError` if a log would contain the initial state only."""
     steps = count_steps(duration, dt)
-    if _check_log_every(log_every) > steps:
+    if check_log_every(log_every) > steps:
         raise _core.InputError(
             f"log_every is {log_every} but the flight has {steps} steps. Log more often."
         )

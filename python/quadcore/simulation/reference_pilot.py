@@ -97,15 +97,18 @@ class PluginPilot(ReferencePilot):
                 "Let it read one."
             )
 
-    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], None]:
+    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], int]:
         """Return the function that publishes the reference and advances a flight."""
         reference: Any = self._reference
 
-        def advance(steps: int) -> None:
+        def advance(steps: int) -> int:
+            if simulation.in_fleet:
+                steps = 1
             for _ in range(steps):
                 if reference is not None:
                     simulation.publish(TOPIC, _list_fields(reference(simulation.time)))
                 flight.advance(1)
+            return steps
 
         return advance
 

@@ -251,12 +251,9 @@ class Simulation(_core.Simulation):
         FlightError
             If the flight fails, or the controller returns no valid command.
         """
-        if commands is not None and controller is not None:
-            raise _core.InputError("a flight takes commands or a controller. Give one of them.")
-        if reference is not None and controller is None:
-            raise _core.InputError("a reference needs a controller that follows it. Give one.")
+        check_source(commands, controller, reference)
         if on_reference:
-            reference = self._start_on(controller, reference)
+            reference = start_on(self, controller, reference)
         names = check_names_argument("topics", topics)
         check({"progress": progress}, {"progress": or_none(PROGRESS)})
         pilot = None if controller is None else make_pilot(controller, self, reference)
@@ -295,17 +292,26 @@ class Simulation(_core.Simulation):
         ]
         return f"<b>{escape(self.model.name)}</b>" + html_table((), rows)
 
-    def _start_on(self, controller: Any, reference: Any) -> Any:
-        """Set the state of a vehicle on a reference, and return the reference."""
-        if reference is None:
-            raise _core.InputError("on_reference needs a reference to begin on. Give one.")
-        if isinstance(reference, str):
-            reference = references.parse(reference)
-        spins = controller.spins if isinstance(controller, BuiltInController) else ()
-        with _core.Run(self):
-            start = references.start(self, reference, spins)
-        self.set_state(start)
-        return reference
+
+def check_source(commands: object, controller: object, reference: object) -> None:
+    """Raise `InputError` if commands, controller and reference of a flight do not fit together."""
+    if commands is not None and controller is not None:
+        raise _core.InputError("a flight takes commands or a controller. Give one of them.")
+    if reference is not None and controller is None:
+        raise _core.InputError("a reference needs a controller that follows it. Give one.")
+
+
+def start_on(simulation: Simulation, controller: Any, reference: Any) -> Any:
+    """Set the state of a vehicle on a reference, and return the reference."""
+    if reference is None:
+        raise _core.InputError("on_reference needs a reference to begin on. Give one.")
+    if isinstance(reference, str):
+        reference = references.parse(reference)
+    spins = controller.spins if isinstance(controller, BuiltInController) else ()
+    with _core.Run(simulation):
+        start = references.start(simulation, reference, spins)
+    simulation.set_state(start)
+    return reference
 
 
 def make_simulation(engine: str, **options: Any) -> Simulation:

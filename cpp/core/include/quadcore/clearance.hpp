@@ -25,6 +25,16 @@ class Clearance {
   /// Return the obstacle that is nearest to a vehicle whose frame has a pose in the world.
   Nearest find(const Vector3d& p_WF, const Quaterniond& R_WF) const;
 
+  /// The pose of a vehicle's frame in the world.
+  struct FramePose {
+    Vector3d position_W;
+    Quaterniond orientation_W;
+  };
+  /// Return the distance of this vehicle's shapes from those of another one, or `known` if it is
+  /// not shorter [m]; 0 if they overlap.
+  double distance_between_vehicles(const Clearance& other, const FramePose& own,
+                                   const FramePose& others, double known) const;
+
   /// A convex shape: a sphere, a box or a cylinder along its z axis.
   struct Convex {
     ShapeKind kind;        ///< defines the meaning of `size`, as in Collision

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "quadcore/force_laws.hpp"
@@ -62,6 +63,40 @@ class Engine {
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
+/// The engines of several vehicles in one world, which this class advances each by itself; derived
+/// classes also simulate contact between them.
+class SharedWorld {
+ public:
+  /// The engines must outlive this object.
+  explicit SharedWorld(std::vector<Engine*> engines) : engines_(std::move(engines)) {}
+  virtual ~SharedWorld() = default;
+
+  /// The force field of a vehicle, and the time at which its step starts [s].
+  struct TimedForces {
+    double time;
+    const ForceField* field;
+  };
+  /// Advance all vehicles by dt.
+  virtual void step(double dt, const std::vector<TimedForces>& forces);
+  /// Return the index of the vehicle that step() works on, for errors.
+  std::size_t current() const { return current_; }
+
+  /// Return the present motion of the world's free bodies.
+  virtual std::vector<FreeBodyState> free_bodies() const { return {}; }
+  /// Return the complete internal state of everything but the engines.
+  virtual std::vector<double> save() const { return {}; }
+  /// Restore the result of save(). Throws InputError if it belongs to another world.
+  virtual void restore(const std::vector<double>& saved);
+  /// Return warnings about the vehicles together.
+  virtual std::vector<std::string> warnings() const;
+
+ protected:
+  std::size_t current_ = 0;
+
+ private:
+  std::vector<Engine*> engines_;
+};
+
 /// An engine that users can choose.
 struct EngineInfo {
   std::string name;     ///< value of SimulationOptions::engine
@@ -81,5 +116,11 @@ const EngineInfo& engine_info(const std::string& name);
 /// Throws InputError on an unknown name or a model or world that the engine cannot represent.
 std::unique_ptr<Engine> make_engine(const std::string& name, const Model& model,
                                     const World& world);
+
+/// Let vehicles share a world. Free bodies of the world move only here: the engines were made for
+/// the world without them.
+/// \param name  name of the engine that made all of `engines`, which must outlive the result
+std::unique_ptr<SharedWorld> share_world(const std::string& name,
+                                         const std::vector<Engine*>& engines, const World& world);
 
 }  // namespace quadcore

@@ -37,6 +37,14 @@ class Flight {
   /// rows remain.
   void advance(std::int64_t n);
 
+  /// \name Parts of advance(), for vehicles that a Fleet advances
+  /// @{
+  /// Publish the command that is due. Returns the number of steps, at most n, until the next.
+  std::int64_t prepare(std::int64_t n);
+  /// Log the present state if it is due after so many steps.
+  void finish(std::int64_t steps);
+  /// @}
+
   /// Return the rows logged since the last call.
   LogRows take();
 

@@ -57,7 +57,8 @@ struct SimulationOptions {
   Pose spawn = {};  ///< initial pose of the frame in the world
 };
 
-/// One vehicle in one world with plugins and an engine. The caller advances it.
+/// One vehicle in one world with plugins and an engine. The caller advances it, or the Fleet that
+/// it belongs to.
 class Simulation : private ForceField {
  public:
   /// Limit of angular velocities and joint rates at which a flight counts as diverged [rad/s].
@@ -154,6 +155,8 @@ class Simulation : private ForceField {
   const std::vector<Wrench>& wrenches();
 
  private:
+  friend class Fleet;
+
   void evaluate(Kinematics& kinematics, Loads& loads) const override;
   const ForceLaws& laws() const override { return laws_; }
   void evaluate_rest(Kinematics& kinematics, Loads& loads) const override;
@@ -177,6 +180,10 @@ class Simulation : private ForceField {
   void take_along();
   /// Return the current exception's message with the plugin that raised it.
   std::string blamed() const;
+  std::unique_ptr<Engine> create_engine(const Model& model) const;
+  void check_usable() const;  ///< throws FlightError if the flight has failed
+  void begin_step();
+  void end_step();
   void begin();  ///< runs the sensors at the start of the motion
   void check_flight() const;
   /// Return advice on a diverged motion, or the last warning of this flight.
@@ -216,6 +223,7 @@ class Simulation : private ForceField {
   std::string engine_name_;
   const Model model_;  ///< model of the URDF
   const World world_;
+  bool in_fleet_ = false;  ///< whether a Fleet moves the free bodies
   double dt_;
   std::uint64_t seed_ = 0;
   std::shared_ptr<const Fingerprint> fingerprint_;
@@ -243,6 +251,7 @@ class Simulation : private ForceField {
   std::int64_t steps_ = 0;
   VectorXd plugin_state_;
   VehicleState state_;
+  VehicleState start_;                            ///< state in which the simulation was made
   std::string failure_;                           ///< reason of a failure, or ""
   mutable const LoadedPlugin* active_ = nullptr;  ///< plugin whose hook is running, for errors
   Snapshot initial_;                              ///< state before the sensors ran

@@ -82,6 +82,12 @@ std::vector<Vector3d> outer_points(const Convex& shape) {
   return points;
 }
 
+Convex move_to(Convex shape, const Vector3d& p_WF, const Quaterniond& R_WF) {
+  shape.position = p_WF + R_WF * shape.position;
+  shape.rotation = R_WF * shape.rotation;
+  return shape;
+}
+
 /// Return the distance of two convex shapes: the shortest from their centres and outer points, so
 /// that an edge or a corner that touches a nearly parallel face is found.
 double distance_between(const Convex& a, const Convex& b) {
@@ -160,9 +166,8 @@ Clearance::Clearance(const Model& model, const World& world) : given_(world.obst
 
 Clearance::Nearest Clearance::find(const Vector3d& p_WF, const Quaterniond& R_WF) const {
   Nearest nearest;
-  for (Convex shape : shapes_F_) {
-    shape.position = p_WF + R_WF * shape.position;
-    shape.rotation = R_WF * shape.rotation;
+  for (const Convex& shape_F : shapes_F_) {
+    const Convex shape = move_to(shape_F, p_WF, R_WF);
     for (std::size_t i = 0; i < given_.size(); ++i) {
       double distance = 0;
       if (given_[i].kind == ShapeKind::plane) {
@@ -181,6 +186,20 @@ Clearance::Nearest Clearance::find(const Vector3d& p_WF, const Quaterniond& R_WF
     }
   }
   return nearest;
+}
+
+double Clearance::distance_between_vehicles(const Clearance& other, const FramePose& own,
+                                            const FramePose& others, double known) const {
+  for (const Convex& shape_F : shapes_F_) {
+    const Convex shape = move_to(shape_F, own.position_W, own.orientation_W);
+    for (const Convex& other_F : other.shapes_F_) {
+      const Convex against = move_to(other_F, others.position_W, others.orientation_W);
+      const double bound =
+          (against.position - shape.position).norm() - against.radius - shape.radius;
+      if (bound < known) known = std::min(known, distance_between(shape, against));
+    }
+  }
+  return known;
 }
 
 }  // namespace quadcore

@@ -38,17 +38,23 @@ void Flight::advance(std::int64_t n) {
   make_room(rows_.table, rows * row_size_);
   make_room(rows_.wrenches, rows * wrenches_size_);
   while (n > 0) {
-    std::int64_t steps = std::min(n, log_every_ - steps_ % log_every_);
-    if (commands_) {
-      const double* speeds = commands_->at(simulation_.time());
-      if (speeds) simulation_.command(speeds, simulation_.command_width());
-      steps = 1;
-    }
+    const std::int64_t steps = prepare(n);
     simulation_.step(steps);
-    steps_ += steps;
+    finish(steps);
     n -= steps;
-    if (steps_ % log_every_ == 0) log();
   }
+}
+
+std::int64_t Flight::prepare(std::int64_t n) {
+  if (!commands_) return std::min(n, log_every_ - steps_ % log_every_);
+  const double* speeds = commands_->at(simulation_.time());
+  if (speeds) simulation_.command(speeds, simulation_.command_width());
+  return 1;
+}
+
+void Flight::finish(std::int64_t steps) {
+  steps_ += steps;
+  if (steps_ % log_every_ == 0) log();
 }
 
 LogRows Flight::take() { return std::exchange(rows_, LogRows()); }

@@ -36,7 +36,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   ignored_ = ignored_in({&model_.ignored_elements, &world.ignored_elements});
   const std::vector<std::string> unsimulated = world.ignored_elements.unsimulated();
   ignored_.insert(ignored_.end(), unsimulated.begin(), unsimulated.end());
-  engine_ = make_engine(options.engine, model_, world);
+  engine_ = create_engine(model_);
   for (const std::string& warning : engine_->warnings()) warn(warning);
   warnings_at_load_ = warnings_.size();
   command_topic_ = topics_.find(command_topic);
@@ -46,10 +46,10 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   const auto n = static_cast<Eigen::Index>(model_.joints.size());
   state_.rotor_velocity = VectorXd::Zero(n);
   state_.rotor_angle = VectorXd::Zero(n);
-  VehicleState start = state_;
-  start.position = options.spawn.xyz;
-  start.orientation = options.spawn.rotation();
-  start.time = world.start_time;
+  start_ = state_;
+  start_.position = options.spawn.xyz;
+  start_.orientation = options.spawn.rotation();
+  start_.time = world.start_time;
   try {
     check_drivers();
     take_along();
@@ -58,7 +58,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   } catch (...) {
     throw InputError(blamed());
   }
-  place(start);
+  place(start_);
   initial_ = snapshot();
   reset(options.seed);
 }
@@ -70,28 +70,39 @@ void Simulation::warn(const std::string& warning) {
 void Simulation::step(std::int64_t n) {
   if (n < 0)
     throw InputError("the step count is " + std::to_string(n) + ". Give a whole number >= 0.");
-  if (!failure_.empty()) {
-    throw FlightError(time(), failure_ + (failure_.back() == '.' ? "" : ".") +
-                                  " To continue, call reset, restore or set_state.");
-  }
+  check_usable();
   try {
     for (; n > 0; --n) {
-      update();
-      if (!with_.carried.empty()) take_along();
+      begin_step();
       if (motion_) {
         move();
       } else {
         engine_->step(time(), dt_, *this);
       }
-      ++steps_;
-      check_flight();
-      show_instant();
-      sense(false);
+      end_step();
     }
     show_state();
   } catch (...) {
     fail(what_was_thrown());
   }
+}
+
+void Simulation::check_usable() const {
+  if (failure_.empty()) return;
+  throw FlightError(time(), failure_ + (failure_.back() == '.' ? "" : ".") +
+                                " To continue, call reset, restore or set_state.");
+}
+
+void Simulation::begin_step() {
+  update();
+  if (!with_.carried.empty()) take_along();
+}
+
+void Simulation::end_step() {
+  ++steps_;
+  check_flight();
+  show_instant();
+  sense(false);
 }
 
 void Simulation::move_by(Motion motion) { motion_ = std::move(motion); }

@@ -108,7 +108,7 @@ std::unique_ptr<Engine> Simulation::another_engine(const VectorXd& plugin_state)
   }
   active_ = nullptr;
   if (!changed && asked_.size() == carried_.size()) return nullptr;
-  return make_engine(engine_name_, with_carried(model_, asked_), world_);
+  return create_engine(with_carried(model_, asked_));
 }
 
 void Simulation::change_to(std::unique_ptr<Engine> engine) {

@@ -28,6 +28,11 @@ class ControlLoop {
 
   /// Advances n steps. Throws what the flight, a command and the controller throw.
   void advance(std::int64_t n, const Call& call);
+  /// Call the controller and command the rotors if that is due. Returns the number of steps, at
+  /// most n, until the next event. For vehicles that a Fleet advances.
+  std::int64_t prepare(std::int64_t n, const Call& call);
+  /// Take note of a step after prepare().
+  void finish();
 
   /// Return the total variation of the magnitude of each rotor's joint rate over all steps so far
   /// [rad/s].

@@ -1,0 +1,124 @@
+"""One vehicle of ``quadcore run``: its plan, its recorders and its results."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict, List, Sequence, Tuple
+
+from .._core import InputError
+from ..formats.rows import Recorder
+from ..simulation.clearance import Clearance
+from ..simulation.flight import count_steps, list_columns
+from ..simulation.log import check_log_path, make_log_file
+from ..simulation.recording import DecimatedRows, FastestRotor, Recording, TrackingError
+from . import run_folder, terminal
+from .command_checks import warn_of_commands, warn_of_yaw_zero
+from .run_summary import summarize
+
+if TYPE_CHECKING:
+    from ..simulation.flight_plan import FlightPlan
+    from ..simulation.simulation import Simulation
+
+
+class RunVehicle:
+    """A vehicle with its pilot, the recorders of its flight and the files to write.
+
+    Parameters
+    ----------
+    arguments
+        Options of the vehicle.
+    plan : FlightPlan
+        Plan of its flight.
+    simulation : Simulation
+        Simulation of this plan.
+    """
+
+    def __init__(
+        self, arguments: argparse.Namespace, plan: FlightPlan, simulation: Simulation
+    ) -> None:
+        self.arguments, self.plan, self.simulation = arguments, plan, simulation
+        self.pilot = plan.pilot(simulation)
+        self.columns = list_columns(simulation, plan.topics, self.pilot)
+        self.fastest = FastestRotor(simulation)
+        self.clearance = Clearance(plan.model, plan.world)
+        self.recorders: List[Recorder] = [self.fastest, self.clearance]
+        self.errors = None
+        if self.pilot is not None:
+            self.errors = TrackingError(self.columns)
+            self.recorders.append(self.errors)
+        terms = simulation.wrench_terms if arguments.wrenches else []
+        self.drawn = None
+        if arguments.out is not None:
+            steps = count_steps(plan.duration, simulation.dt)
+            self.drawn = DecimatedRows(1 + steps // plan.log_every, self.columns, terms)
+            self.recorders.append(self.drawn)
+        self._logs = [
+            make_log_file(file, self.columns, terms, simulation.ignored)
+            for file in _check_log_files(arguments)
+        ]
+        self._described: List[Path] = []
+        if arguments.out is not None:
+            self._described = run_folder.write_description(arguments, plan, simulation)
+
+    def open_recording(self) -> Recording:
+        """Return the recording of the flight, which has all recorders."""
+        self.recording = Recording(self._logs, self.recorders)
+        return self.recording
+
+    def keep_logs(self) -> None:
+        """Close the logs of a flight that ended early, and name them."""
+        for file in self.recording.close():
+            terminal.print_message(f"log until t = {self.fastest.time:.6g} s: {file}")
+
+    def summarize(self, elapsed: float) -> Dict[str, Any]:
+        """Return the result of the flight, by name."""
+        return summarize(
+            self.arguments,
+            self.plan,
+            self.simulation,
+            self.fastest,
+            self.clearance,
+            elapsed,
+            self.pilot,
+            self.errors,
+        )
+
+    def write_results(self, logs: Sequence[Path], rows: Sequence[Tuple[str, str]]) -> List[Path]:
+        """Write plots and page, and return all files of the flight."""
+        files = list(logs)
+        if self.drawn is not None:
+            files += self._described
+            files += run_folder.write_results(
+                self.arguments, self.plan, self.simulation, self.drawn.log(), rows
+            )
+        return files
+
+    def warn(self) -> None:
+        """Warn of commands and references that fit the vehicle badly."""
+        warn_of_commands(self.simulation, self.plan)
+        if self.errors is not None:
+            warn_of_yaw_zero(self.simulation, self.errors.max)
+
+
+def print_result(rows: Sequence[Tuple[str, str]], files: Sequence[Path], title: str = "") -> None:
+    """Print the lines of a summary, and the files that were written."""
+    table = terminal.make_table("", "", show_header=False)
+    if title:
+        table.title = title
+    for row in [*rows, *(("" if i else "written", str(file)) for i, file in enumerate(files))]:
+        table.add_row(*row)
+    terminal.make_console().print(table)
+
+
+def _check_log_files(arguments: argparse.Namespace) -> List[Path]:
+    """Name the logs to write, and check now that they can be written after the flight."""
+    files = list(arguments.log)
+    if arguments.out is not None:
+        files.insert(0, arguments.out / run_folder.LOG)
+    for i, file in enumerate(files):
+        check_log_path(file)
+        if os.path.realpath(file) in [os.path.realpath(other) for other in files[:i]]:
+            raise InputError(f"{file}: would be written twice. Name each log once.")
+    return files

@@ -1,0 +1,183 @@
+"""The public class `Fleet`."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
+
+from .. import _core
+from .._core import InputError
+from ..control.controller import ControllerLike
+from ..control.keywords import ReferenceName
+from ..control.references import ReferenceLike
+from ..model.description import check_names_argument
+from ..support.arguments import PROGRESS, check, or_none, shorten
+from ..support.warning import warn
+from .commands import CommandsLike
+from .controller_pilot import make_pilot
+from .engines import check_wrenches
+from .fleet_flight import FlightOfVehicle, fly_fleet
+from .flight import Progress, Rows, list_columns
+from .log import Log
+from .simulation import Simulation, check_source, start_on
+
+CommandsOfFleet = Union[CommandsLike, Mapping[str, Optional[CommandsLike]], None]
+"""Commands of all vehicles, or of each by name."""
+
+ControllerOfFleet = Union[ControllerLike, Mapping[str, Optional[ControllerLike]], None]
+"""Name of a controller for all vehicles, or the controller of each by name."""
+
+ReferenceOfFleet = Union[
+    ReferenceLike,
+    ReferenceName,
+    Mapping[str, Union[ReferenceLike, ReferenceName, None]],
+    None,
+]
+"""A reference of all vehicles, or of each by name."""
+
+
+class Fleet(_core.Fleet):
+    """Simulate several vehicles in one world.
+
+    Each vehicle is a `Simulation` with its own model, parameters, seed and spawn. A vehicle that
+    touches no other moves bit-identically as it does alone. In the engines gazebo11 and ode,
+    vehicles collide with each other and with the free bodies of the world, as in Gazebo. In the
+    engine eigen, they pass through each other, of which a warning informs.
+
+    Parameters
+    ----------
+    vehicles : sequence of Simulation, or mapping of str to Simulation
+        Vehicles with the same engine, world and step. A mapping gives their names; otherwise they
+        have the names of their models, numbered if they are equal. All are reset to their initial
+        state. From then on only the fleet advances them.
+
+    Attributes
+    ----------
+    vehicles : dict of str to Simulation
+        Vehicle of each name. The last one is the newest in the world.
+
+    Raises
+    ------
+    InputError
+        If engine, world or step differ, or a simulation belongs to a fleet already.
+
+    Warns
+    -----
+    QuadcoreWarning
+        If the engine does not simulate contact between vehicles.
+    """
+
+    def __init__(self, vehicles: Union[Sequence[Simulation], Mapping[str, Simulation]]) -> None:
+        if not isinstance(vehicles, Mapping):
+            vehicles = name_vehicles(vehicles)
+        for name, vehicle in vehicles.items():
+            if not (isinstance(name, str) and isinstance(vehicle, Simulation)):
+                raise InputError(
+                    f"vehicle {shorten(name)} is {shorten(vehicle)}. Give a quadcore.Simulation."
+                )
+        super().__init__(list(vehicles.values()), list(vehicles))
+        self.vehicles: Dict[str, Simulation] = dict(vehicles)
+        for warning in self.warnings:
+            warn(warning)
+
+    def run(
+        self,
+        duration: float,
+        commands: CommandsOfFleet = None,
+        log_every: int = 1,
+        progress: Optional[Progress] = None,
+        wrenches: bool = False,
+        topics: Sequence[str] = (),
+        *,
+        controller: ControllerOfFleet = None,
+        reference: ReferenceOfFleet = None,
+        on_reference: bool = False,
+    ) -> Dict[str, Log]:
+        """Simulate all vehicles for a duration and log the states of each.
+
+        Any exception that ends the run has the attribute `logs`, which contains the rows so far.
+
+        Parameters
+        ----------
+        duration, log_every, progress, wrenches, topics, on_reference
+            As for `Simulation.run`.
+        commands, controller, reference
+            As for `Simulation.run`: one for all vehicles, or a mapping of names to that of each
+            vehicle, in which vehicles may be missing.
+
+        Returns
+        -------
+        dict of str to Log
+            Log of each vehicle.
+
+        Raises
+        ------
+        InputError
+            If an argument is wrong; nothing is simulated. Also if a callback moves a vehicle.
+        FlightError
+            If a flight fails, or a controller returns no valid command.
+        """
+        names = check_names_argument("topics", topics)
+        check({"progress": progress}, {"progress": or_none(PROGRESS)})
+        tables = _spread("commands", commands, self.names)
+        controllers = _spread("controller", controller, self.names)
+        references = _spread("reference", reference, self.names)
+        if not isinstance(controller, (str, Mapping, type(None))) and len(self.names) > 1:
+            raise InputError(
+                "controller is one object for several vehicles. Give a mapping of names to the "
+                "controller of each."
+            )
+        flights: List[FlightOfVehicle] = []
+        rows: Dict[str, Rows] = {}
+        for name, vehicle in self.vehicles.items():
+            if wrenches:
+                check_wrenches(vehicle.engine)
+            law, path = controllers[name], references[name]
+            check_source(tables[name], law, path)
+            if on_reference and path is not None:
+                path = start_on(vehicle, law, path)
+            pilot = None if law is None else make_pilot(law, vehicle, path)
+            if pilot is not None and pilot.moves:
+                raise InputError(f"vehicle '{name}': its controller moves the vehicle itself.")
+            rows[name] = Rows(vehicle, list_columns(vehicle, names, pilot))
+            receive = rows[name].receive
+            flights.append(
+                FlightOfVehicle(name, vehicle, receive, tables[name], pilot, wrenches, names)
+            )
+        try:
+            fly_fleet(self, duration, flights, log_every, progress)
+        except (Exception, KeyboardInterrupt) as error:
+            error.logs = _collect(rows)  # type: ignore[union-attr]
+            raise
+        return _collect(rows)
+
+    def __repr__(self) -> str:
+        return f"<Fleet of {', '.join(self.names)}, t = {self.time:g} s, steps of {self.dt:g} s>"
+
+
+def _collect(rows: Mapping[str, Rows]) -> Dict[str, Log]:
+    return {name: each.log() for name, each in rows.items()}
+
+
+def name_vehicles(vehicles: Sequence[Simulation]) -> Dict[str, Simulation]:
+    """Name each vehicle after its model; equal names get a number."""
+    named: Dict[str, Simulation] = {}
+    for vehicle in vehicles:
+        model = vehicle.model.name if isinstance(vehicle, Simulation) else ""
+        name, number = model, 1
+        while name in named:
+            number += 1
+            name = f"{model}_{number}"
+        named[name] = vehicle
+    return named
+
+
+def _spread(what: str, value: Any, names: Sequence[str]) -> Dict[str, Any]:
+    """Return a value for each vehicle."""
+    if not isinstance(value, Mapping):
+        return dict.fromkeys(names, value)
+    for name in value:
+        if name not in names:
+            raise InputError(
+                f"{what}: no vehicle has the name {shorten(name)}. Use {', '.join(names)}."
+            )
+    return {name: value.get(name) for name in names}

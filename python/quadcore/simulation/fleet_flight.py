@@ -1,0 +1,151 @@
+"""Loop of a flight of several vehicles in one world."""
+
+from __future__ import annotations
+
+import time
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Any, List, Optional, Sequence
+
+import numpy as np
+
+from .. import _core
+from ..support import interrupts
+from .commands import CommandsLike, check_commands
+from .flight import Pilot, Progress, Receive, check_log_every, close_at_end, count_steps
+
+_PIECE = 0.02  # s; what is flown between two looks at progress and Ctrl-C
+_ROWS = 4096  # of a piece, at most
+
+
+@dataclass
+class FlightOfVehicle:
+    """Flight of one vehicle of a fleet.
+
+    Attributes
+    ----------
+    name : str
+        Name of the vehicle.
+    simulation : Simulation
+        Vehicle.
+    receive : callable
+        As for `flight.fly`.
+    commands, pilot, wrenches, topics
+        As for `flight.fly`.
+    """
+
+    name: str
+    simulation: Any
+    receive: Receive
+    commands: Optional[CommandsLike] = None
+    pilot: Optional[Pilot] = None
+    wrenches: bool = False
+    topics: Sequence[str] = ()
+
+
+def fly_fleet(
+    fleet: _core.Fleet,
+    duration: float,
+    flights: Sequence[FlightOfVehicle],
+    log_every: int = 1,
+    progress: Optional[Progress] = None,
+) -> None:
+    """Simulate all vehicles of a fleet for a duration, and pass on the rows of each.
+
+    Parameters
+    ----------
+    duration, log_every, progress
+        As for `Simulation.run`.
+    flights
+        Flight of each vehicle, in the order of the fleet.
+
+    Raises
+    ------
+    InputError, FlightError
+        As for `flight.fly`. The attribute `vehicle` is the name of the vehicle whose commands are
+        at fault, if any.
+    """
+    total = count_steps(duration, fleet.dt)
+    log_every = check_log_every(log_every)
+    with ExitStack() as stack:
+        for flight in flights:
+            if flight.pilot is not None:
+                stack.enter_context(close_at_end(flight.pilot))
+                flight.pilot.reset(flight.simulation)
+        for flight in flights:
+            stack.enter_context(_core.Run(flight.simulation))
+        seats = [_Seat(flight, log_every) for flight in flights]
+        try:
+            _advance(fleet, seats, total, _ROWS * log_every, progress)
+        finally:
+            with interrupts.hold_signals():
+                for seat in seats:
+                    seat.hand_over()
+
+
+class _Seat:
+    """Flight of a vehicle in the core, with the source of its commands."""
+
+    def __init__(self, flight: FlightOfVehicle, log_every: int) -> None:
+        simulation, pilot = flight.simulation, flight.pilot
+        table = None
+        if flight.commands is not None:
+            table = check_commands(flight.commands, simulation.command_width)
+        wrenches = flight.wrenches and len(simulation.wrench_terms) > 0
+        self.core = _core.Flight(simulation, table, log_every, wrenches, flight.topics)
+        self._prepare = self.core.advance if pilot is None else pilot.begin(simulation, self.core)
+        self._flight, self._pilot = flight, pilot
+
+    def prepare(self, steps: int) -> int:
+        """Publish the command that is due; returns the number of steps until the next."""
+        try:
+            return self._prepare(steps)
+        except Exception as error:
+            self._name(error)
+            raise
+
+    def hand_over(self) -> None:
+        """Pass the new rows on."""
+        table, wrenches = self.core.take()
+        whole = table
+        if self._pilot is not None:
+            try:
+                whole = self._pilot.add_columns(table)
+            except BaseException as error:  # the states are valid even so
+                self._name(error)
+                added = np.full((len(table), len(self._pilot.columns)), np.nan)
+                self._flight.receive(np.hstack([table, added]), wrenches)
+                raise
+        self._flight.receive(whole, wrenches)
+
+    def _name(self, error: BaseException) -> None:
+        error.vehicle = self._flight.name  # type: ignore[attr-defined]
+        if isinstance(error, _core.InputError):
+            error.time = self._flight.simulation.time  # type: ignore[attr-defined]
+
+
+def _advance(
+    fleet: _core.Fleet,
+    seats: List[_Seat],
+    total: int,
+    most: int,
+    progress: Optional[Progress],
+) -> None:
+    """Simulate `total` steps, and hand rows over every few hundredths of a second."""
+    flights = [seat.core for seat in seats]
+    done, rows_at, reported = 0, 0, time.perf_counter()
+    while done < total:
+        steps = min(total - done, most)
+        for seat in seats:
+            steps = min(steps, seat.prepare(steps))
+        fleet._advance(steps, flights)
+        done += steps
+        now = time.perf_counter()
+        if now - reported < _PIECE and done - rows_at < most:
+            continue
+        reported, rows_at = now, done
+        with interrupts.hold_signals():
+            for seat in seats:
+                seat.hand_over()
+        if progress is not None:
+            progress(done, total)
