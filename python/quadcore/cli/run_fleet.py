@@ -29,6 +29,7 @@ MODEL = "--model"
 _OF_ALL = (
     "engine",
     "world",
+    "at",
     "dt",
     "duration",
     "log_every",

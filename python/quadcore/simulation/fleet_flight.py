@@ -62,8 +62,8 @@ def fly_fleet(
     Raises
     ------
     InputError, FlightError
-        As for `flight.fly`. The attribute `vehicle` is the name of the vehicle whose commands are
-        at fault, if any.
+        As for `flight.fly`. If the commands of a vehicle are at fault, the attribute `vehicle` is
+        its name.
     """
     total = count_steps(duration, fleet.dt)
     log_every = check_log_every(log_every)
