@@ -65,7 +65,7 @@ void raising_all_warnings(const BoundFleet& bound, std::size_t i, const Act& act
 
 /// Advance by n steps.
 /// \param flights  those of the vehicles, which log after each step
-void advance(BoundFleet& bound, std::int64_t n, const std::vector<BoundFlight*>& flights) {
+void advance_fleet(BoundFleet& bound, std::int64_t n, const std::vector<BoundFlight*>& flights) {
   raising_all_warnings(bound, 0, [&] {
     without_gil([&] {
       for (; n > 0; --n) {
@@ -80,16 +80,16 @@ void advance(BoundFleet& bound, std::int64_t n, const std::vector<BoundFlight*>&
 }
 
 /// Steps between checks for signals.
-constexpr std::int64_t piece = 1000;
+constexpr std::int64_t steps_between_signals = 1000;
 
-void step(BoundFleet& bound, std::int64_t n) {
+void step_fleet(BoundFleet& bound, std::int64_t n) {
   if (n < 0) {
     throw InputError("the step count is " + std::to_string(n) + ". Give a whole number >= 0.");
   }
   const FleetLock lock(bound, "step()");
   while (n > 0) {
-    const std::int64_t steps = std::min(n, piece);
-    advance(bound, steps, {});
+    const std::int64_t steps = std::min(n, steps_between_signals);
+    advance_fleet(bound, steps, {});
     n -= steps;
     if (n > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
   }
@@ -106,7 +106,7 @@ void bind_fleet(py::module_& m) {
   py::class_<BoundFleet>(m, "Fleet", py::dynamic_attr(),
                          "Several vehicles in one world; use quadcore.Fleet.")
       .def(py::init(&create_fleet), py::arg("vehicles"), py::arg("names"))
-      .def("step", &step, py::arg("n") = 1, R"(Advance all vehicles by whole steps of `dt`.
+      .def("step", &step_fleet, py::arg("n") = 1, R"(Advance all vehicles by whole steps of `dt`.
 
 Parameters
 ----------
@@ -121,7 +121,7 @@ FlightError
           "_advance",
           [](BoundFleet& bound, std::int64_t n, const std::vector<BoundFlight*>& flights) {
             const FleetLock lock(bound);
-            advance(bound, n, flights);
+            advance_fleet(bound, n, flights);
           },
           py::arg("n"), py::arg("flights"))
       .def(
