@@ -187,12 +187,9 @@ def test_closed_streams_are_no_fault(closed):
 @pytest.mark.parametrize(
     "environment",
     [
-        {"PYTHONIOENCODING": "latin-1"},
-        {"PYTHONIOENCODING": "ascii"},
-        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
-        {"MPLBACKEND": "nonsense"},
-        {"COLUMNS": "1"},
-        {"TERM": "dumb"},
+        {"PYTHONIOENCODING": "latin-1", "MPLBACKEND": "nonsense"},
+        {"PYTHONIOENCODING": "ascii", "COLUMNS": "1"},
+        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "TERM": "dumb"},
     ],
 )
 def test_any_terminal_and_locale_will_do(environment, toy):
