@@ -120,7 +120,7 @@ run_in() {
   [ -d /opt/ros/noetic ] || export ROS_PACKAGE_PATH="$ROS_PACKAGE_PATH:/usr/share" \
     PYTHONPATH="$PYTHONPATH:$PWD/$workspace/xacro"
   for name in "$@"; do
-    while [ "$(jobs -rp | wc -l)" -ge $((2 * $(nproc))) ]; do wait -n; done  # they wait a lot
+    while [ "$(jobs -rp | wc -l)" -ge $((3 * $(nproc))) ]; do wait -n; done  # they wait a lot
     run_test $space $name &
   done
   wait

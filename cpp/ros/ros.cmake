@@ -142,6 +142,7 @@ function(quadcore_add_ros_objects name)
   add_library(${name} OBJECT ${ARGN})
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
   quadcore_use_ros(${name} PUBLIC)
+  quadcore_precompile(${name} <ros/ros.h>)
 endfunction()
 
 # quadcore_add_ros_node(NAME SOURCE... [LIBRARIES FOLDER...]) makes a program from sources and folders.
