@@ -80,7 +80,15 @@ window.onload = async () => {
 """
 
 STICK_OUT = """
-function look(view, inside, width) {
+async function look(view, inside, width) {
+  for (const frame of inside.querySelectorAll("iframe")) {
+    const within = frame.contentWindow, root = frame.contentDocument.documentElement;
+    while (!within.quadcore) await new Promise((resolve) => setTimeout(resolve, 10));
+    await within.quadcore.ready;
+    for (let i = 0; i < 100 && root.scrollHeight > frame.clientHeight + 1; ++i) {
+      await new Promise((resolve) => setTimeout(resolve, 20));
+    }
+  }
   const out = [];
   const scrolls = (e) => view.getComputedStyle(e).overflowX !== "visible";
   const hidden = (e) => e && (scrolls(e) || hidden(e.parentElement));

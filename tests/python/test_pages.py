@@ -114,11 +114,12 @@ def test_hostile_names_are_shown_as_text(audited):
             assert shown in each["text"], name
 
 
-def test_every_page_has_verdict_command_version_and_contents(pages):
+def test_every_page_has_verdict_conditions_command_version_and_contents(pages):
     for name, page in pages.items():
         text = page.read_text(encoding="utf-8")
         if name != "play":
-            assert 'class="verdict"' in text and f"<code>quadcore {name} " in text
+            assert 'class="verdict"' in text and 'class="conditions"' in text
+            assert f"<code>quadcore {name} " in text
             assert f"quadcore {qc.__version__}, " in text and '<nav aria-label="contents">' in text
         assert text.count('class="quadcore-player"') >= 1
         assert Path(page).stat().st_size < 2e6

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, Mapping, Sequence, Tuple
 
 from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
@@ -58,6 +58,14 @@ def write_description(
     return [arguments.out / MODEL, *write_flights(arguments.out, [flight], settings, MODEL)]
 
 
+def _describe_conditions(plan: FlightPlan, summary: Mapping[str, str]) -> str:
+    """Describe the conditions of the flight in one line, for the head of the page."""
+    parts = [f"Model {plan.model.name}", f"engine {plan.engine}"]
+    parts += [f"{name} {summary[name]}" for name in ("controller", "reference") if name in summary]
+    step = f"{summary['duration']} at steps of {1e3 * plan.step:g} ms"
+    return "; ".join([*parts, step, f"seed {plan.seed}"]) + "."
+
+
 def _draw(log: Log, folder: Path) -> Dict[str, Drawing]:
     from ..report.log_plots import draw  # matplotlib is slow to import
 
@@ -90,6 +98,7 @@ def write_results(
         page,
         "run.html",
         title=name,
+        conditions=_describe_conditions(plan, dict(rows)),
         rows=rows,
         player=make_section([flight], draw_world(simulation.world)),
         plots=[(name, _PLOTS.get(name, name), drawing) for name, drawing in plots.items()],

@@ -72,6 +72,33 @@ def _plain(content: Any) -> Any:
     return None if content != content else content
 
 
+_NAMED = 4  # names of a kind in one line
+
+
+def describe_conditions(settings: Mapping[str, Any]) -> str:
+    """Describe the conditions of a study's flights in one line, for the head of its page.
+
+    Parameters
+    ----------
+    settings
+        Settings of all flights; those that have no name here are left out.
+    """
+    parts = []
+    for kinds in ("models", "engines", "controllers", "references", "scenarios"):
+        names = [name for name in settings.get(kinds, ()) if name]
+        if len(names) > _NAMED:
+            parts.append(f"{len(names)} {kinds}")
+        elif names:
+            parts.append(f"{kinds if len(names) > 1 else kinds[:-1]} {', '.join(names)}")
+    if "duration" in settings:
+        parts.append(f"{settings['duration']:g} s at steps of {1e3 * settings['dt']:g} ms")
+    seeds = settings.get("seeds", ())
+    if len(seeds):
+        parts.append(f"{len(seeds)} seeds" if len(seeds) > 1 else f"seed {seeds[0]}")
+    text = "; ".join(parts)
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
 def format_settings(setting: Mapping[str, Any], most: Optional[int] = None) -> Dict[str, str]:
     """Format settings for a page: at most `most` entries of a list, no empty values."""
     found = {}

@@ -27,6 +27,7 @@ from .result import Comparison
 
 _ROWS_OF_PAGE = 200
 _DRAWN = 40  # flights in one plot
+_CONDITIONS = ("engine", "controller", "reference", "commands", "scenario", "duration")
 
 
 def pick_drawn(count: int) -> List[int]:
@@ -191,6 +192,7 @@ def _page_values(
     return {
         "title": "Comparison of flights",
         "summary": summarise(comparison),
+        "conditions": _describe_conditions(flight, plan),
         "verdict": _describe_largest(comparison, plan),
         "flight": flight,
         "differences": comparison.differences,
@@ -212,6 +214,14 @@ def _page_values(
         "rows": rows,
         "more": max(0, len(plan) - _ROWS_OF_PAGE),
     }
+
+
+def _describe_conditions(flight: Mapping[str, str], plan: Plan) -> str:
+    """Describe what all flights share in one line, for the head of the page."""
+    kind = "Models" if len(plan.models) > 1 else "Model"
+    shared = [f"{name} {flight[name]}" for name in _CONDITIONS if name in flight]
+    varied = [f"{axis.name} {format_values(axis.values)}" for axis in plan.axes]
+    return "; ".join([f"{kind} {', '.join(plan.models)}", *shared, *varied]) + "."
 
 
 def _describe_largest(comparison: Comparison, plan: Plan) -> str:

@@ -16,6 +16,7 @@ from ..output_folder import remove_plots, save_plots
 from ..table import (
     NOT_FLOWN,
     count_outcomes,
+    describe_conditions,
     format_settings,
     make_csv,
     make_json,
@@ -247,6 +248,7 @@ def _page_values(
     return {
         "title": plan.title,
         "summary": summarise(evaluation),
+        "conditions": describe_conditions(plan.describe()),
         "verdicts": describe_best(evaluation.groups),
         "overview": make_overview(evaluation.groups),
         "flight": format_settings(plan.describe()),

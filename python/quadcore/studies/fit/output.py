@@ -129,10 +129,15 @@ def write_fit(folder: Path, found: Fit, world: World) -> List[Path]:
     shown = [(each, unit, list(map(format_number, values))) for each, unit, values in residuals]
     images = draw_differences(found.motion) if found.motion else {}
     written = save_drawings(folder, images)
+    conditions = f"Model {found.model.name}; {_count(found.values)}"
+    if found.motion:
+        time = found.motion[0][1].time
+        conditions += f"; {time[-1] - time[0]:g} s of a log"
     page = _write_page(
         folder, "fit.html", found.motion, found.model, world, verdict=f"{verdict}.",
         statements=[f"{line[:1].upper()}{line[1:]}." for line in found.describe()],
-        title=f"Fit of {found.model.name}", parameters=rows, residuals=shown,
+        title=f"Fit of {found.model.name}", conditions=f"{conditions}.", parameters=rows,
+        residuals=shown,
         player_note=_PLAYER_NOTE, predictions=[], recordings=[],
         plots=[{"name": name, "data": data} for name, data in images.items()],
     )  # fmt: skip
@@ -146,6 +151,7 @@ def write_rotor_factors(
     return _write_page(
         folder, "fit.html", [], model, world, verdict=verdict, statements=[],
         title=f"Thrust of the rotors of {model.name}", parameters=rows, residuals=[],
+        conditions=f"Model {model.name}; mean squared commands of the flights.",
         predictions=[], plots=[], recordings=[],
     )  # fmt: skip
 

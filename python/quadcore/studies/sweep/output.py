@@ -13,7 +13,13 @@ from ..._core import InputError
 from ..flight_folder import DOCUMENT, remove_flights
 from ..output_folder import remove_plots, save_plots
 from ..step_error import compute_step_error
-from ..table import format_number, format_settings, make_json, save_files
+from ..table import (
+    describe_conditions,
+    format_number,
+    format_settings,
+    make_json,
+    save_files,
+)
 from . import plots as sweep_plots
 from .plan import AnyPlan
 from .repeat_command import write_command
@@ -77,6 +83,7 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         page,
         "sweep.html",
         title="Sweep",
+        conditions=describe_conditions(plan.describe()),
         summary=count_rows(plan, columns),
         flight=format_settings(plan.describe(), 20),
         lines=[_format(row) for row in summarise_rows(plan, columns)],
