@@ -21,6 +21,7 @@ import sys
 IMPORTED = (
     "matplotlib.backends.backend_agg",
     "matplotlib.figure",
+    "printed",
     "quadcore.__main__",
     "scipy.linalg",
     "scipy.optimize",

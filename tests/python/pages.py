@@ -9,6 +9,7 @@ sees, tell what else becomes of it:
     <!-- run: COMMAND -->  what a reader of the page has done before, in a shell
     <!-- python: CODE -->  the same in Python
     <!-- output -->        the block before prints it; ... stands for any text
+    <!-- output: 0.02 -->  the same, with numbers within 2 %; more of them continue the first
 
 Sweeps fly little, other flights are cut short except in tutorials, in READMEs and where the output
 is shown, and programs of systems that are not here are stood in for (`stand_in.py`).
@@ -53,8 +54,9 @@ PIECE = """<robot name="piece" xmlns:xacro="http://www.ros.org/wiki/xacro">
 {}</robot>
 """
 DRIVER = """
-import contextlib, doctest, io, os, subprocess, sys
+import contextlib, io, os, subprocess, sys
 from pathlib import Path
+from printed import check_printed
 
 def _shell(*command, **environment):
     ran = subprocess.run(
@@ -64,13 +66,12 @@ def _shell(*command, **environment):
     assert ran.returncode == 0, f"{command[-1]}\\n{ran.stdout}"
     print(ran.stdout, end="")
 
-def _show(step, expected):
+def _show(step, expected, tolerance):
     with contextlib.redirect_stdout(io.StringIO()) as out:
         exec(step, globals())
     printed = "".join(f"{line.rstrip()}\\n" for line in out.getvalue().splitlines())
     print(printed, end="")
-    is_so = doctest.OutputChecker().check_output(expected, printed, doctest.ELLIPSIS)
-    assert is_so, f"the page shows\\n{expected}\\nbut it prints\\n{printed}"
+    check_printed(expected, printed, tolerance)
 
 def _octave(text):
     served = Path("served")
@@ -82,7 +83,14 @@ def _octave(text):
 
 def blocks(page):
     """Each block of a page, and each command before one, as a dictionary of BLOCK's names."""
-    return [match.groupdict() for match in BLOCK.finditer(page.read_text(encoding="utf-8"))]
+    found = []
+    for match in BLOCK.finditer(page.read_text(encoding="utf-8")):
+        block = match.groupdict()
+        if block["marker"] == "output" and found[-1]["marker"] == "output":
+            found[-1]["text"] += block["text"]
+        else:
+            found.append(block)
+    return found
 
 
 def run(page, folder):
@@ -97,7 +105,7 @@ def run(page, folder):
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text)
         elif block["marker"] == "output":
-            steps[-1] = f"_show({steps[-1]!r}, {text!r})"
+            steps[-1] = f"_show({steps[-1]!r}, {text!r}, {float(block['file'] or 0)})"
         elif block["marker"] == "quoted" or NOT_RUN.match(language or ""):
             continue
         elif block["kind"] == "python" or language == "python":
