@@ -282,6 +282,21 @@ def test_the_delay_of_the_inputs_is_free(late_rotors, names):
     assert found.values["frame.ixx"] == pytest.approx(1.6e-5, rel=0.01)
 
 
+def test_a_long_delay_of_noisy_rotor_speeds_is_found(tmp_path):
+    """Predictions of the wrong delay have a minimum near 0, too."""
+    table = fly("eight", {}, duration=10).table
+    late = table[10:].copy()
+    late[:, 14:] = table[:-10, 14:]
+    late[:, 0] -= late[0, 0]
+    random = np.random.default_rng(0)
+    for columns, noise in ((slice(1, 4), 5e-4), (slice(11, 14), 0.05), (slice(14, 18), 20)):
+        late[:, columns] += random.normal(0, noise, late[:, columns].shape)
+    qc.Log(late).to_csv(tmp_path / "flight.csv")
+    free = ["frame.ixx", "frame.iyy"]
+    found = fit_recordings("crazyflie", [tmp_path / "flight.csv"], free=free).found
+    assert found.trims[0, 0] == pytest.approx(-0.1, abs=2e-3)
+
+
 def test_a_given_delay_is_fixed_in_fit_and_prediction(late_rotors, tmp_path):
     fitted = tmp_path / "fitted.urdf"
     done = run_command(

@@ -266,6 +266,8 @@ def fit_flights(
     if fixed:
         _fix_delay(search, free)
     _fix_speed(search, free, [has and i > 0 for i, has in enumerate(_list_scaled(windows))])
+    if not fixed:
+        x = _choose_delays(search, x)
     halves, begin_x = [Half(search, search)], x
     least = search.find(x, free, progress)
     best: Optional[np.ndarray] = least
@@ -307,6 +309,8 @@ def calibrate_trims(predictor: Predictor, values: Dict[str, float]) -> np.ndarra
     _fix_speed(search, free, _list_scaled(predictor.windows))
     if DELAY in values:
         _fix_delay(search, free)
+    else:
+        x = _choose_delays(search, x)
     return np.asarray(search.split(search.find(x, free) if free.any() else x)[1])
 
 
@@ -326,6 +330,28 @@ def _list_scaled(windows: Windows) -> List[bool]:
 def _fix_delay(search: Search, free: np.ndarray) -> None:
     """Fix the delay of all flights."""
     free[search.parameters :: len(search.trim_sizes)] = False
+
+
+def _choose_delays(search: Search, x: np.ndarray) -> np.ndarray:
+    """Start each flight with measured rotor speeds at the best of some delays.
+
+    The errors of predictions have several minima over the delay of an input that varies quickly.
+    Commands have delays near their start.
+    """
+    flight, width = search.predictor.windows.flight, len(search.trim_sizes)
+    places = search.parameters + width * np.arange(len(search.predictor.windows.flights))
+    costs = []
+    delays = np.arange(*INPUT_BOUNDS[DELAY], 0.02) + 0.02
+    for delay in delays:
+        tried = x.copy()
+        tried[places] = delay / search.trim_sizes[0]
+        cost = np.sum(np.sqrt(1 + search.compute(tried) ** 2), axis=1)  # soft_l1
+        costs.append(np.bincount(flight, cost))
+    best = delays[np.argmin(costs, axis=0)]
+    has_rotors = [each.rotors is not None for each in search.predictor.windows.flights]
+    chosen = x.copy()
+    chosen[places[has_rotors]] = best[has_rotors] / search.trim_sizes[0]
+    return chosen
 
 
 def _fix_speed(search: Search, free: np.ndarray, is_free: Sequence[bool]) -> None:
