@@ -48,6 +48,18 @@ def test_the_summary_names_the_nearest_vehicle_and_collisions(capsys):
     assert "collisions with vehicles  0" in out
 
 
+def test_a_vehicle_has_the_name_that_is_given_and_eigen_states_what_it_leaves_out(capsys):
+    named = [*COMMON, "--json", "--engine", "eigen", *LOW, "--name", "low", *HIGH, "--name", "high"]
+    assert main(named) == 0
+    captured = capsys.readouterr()
+    vehicles = json.loads(captured.out)["vehicles"]
+    assert list(vehicles) == ["low", "high"]
+    assert vehicles["low"]["nearest_vehicle"]["obstacle"] == "high"
+    assert vehicles["low"]["unsimulated"] == ["contact between vehicles"]
+    assert "warning: the vehicles pass through each other" in captured.err
+    assert "--name: names one of several vehicles" in refuse(capsys, "run", "iris", "--name", "a")
+
+
 def test_vehicles_need_places_and_options_of_their_own(capsys):
     same = refuse(capsys, *COMMON, *LOW, *LOW)
     assert "vehicles 'quadrotor' and 'quadrotor_2' start at the same place" in same

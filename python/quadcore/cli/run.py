@@ -51,6 +51,11 @@ def register(commands: Any) -> None:
         help="one of several vehicles in one world; the options that follow are for this vehicle, "
         "those before the first --model for all; repeatable",
     )
+    find_group(parser, VEHICLE).add_argument(
+        "--name",
+        metavar="NAME",
+        help="name of a vehicle, after its --model (default: the model's, numbered if equal)",
+    )
     parser.set_defaults(parser=parser)
     options.add_flight(parser, choices=list_engines())
     options.add_commands(parser)
@@ -91,6 +96,8 @@ def run_flight(arguments: argparse.Namespace) -> None:
         return run_fleet.run_fleet(arguments)
     if arguments.model is None:
         arguments.parser.error("the following arguments are required: MODEL")
+    if arguments.name is not None:
+        raise InputError("--name: names one of several vehicles. Name each by --model.")
     if arguments.wrenches:
         check_wrenches(arguments.engine)
     if arguments.pace is not None and not arguments.live:

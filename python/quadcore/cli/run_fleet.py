@@ -61,7 +61,8 @@ def run_fleet(arguments: argparse.Namespace) -> None:
         if logs.count(log) > 1:
             raise InputError(f"{log}: would be written twice. Give --log after each {MODEL}.")
     plans = [reading.make_flight_plan(vehicle) for vehicle in vehicles]
-    simulations = name_vehicles([plan.simulation() for plan in plans])
+    names = [vehicle.name or plan.model.name for vehicle, plan in zip(vehicles, plans)]
+    simulations = name_vehicles(names, [plan.simulation() for plan in plans])
     fleet = Fleet(simulations)
     out = vehicles[0].out
     with ExitStack() as stack:
@@ -109,7 +110,7 @@ def _check_starts(flown: Dict[str, RunVehicle]) -> None:
 
 def _check_folder_name(name: str) -> str:
     if name in ("", ".", "..") or "/" in name:
-        raise InputError(f"model '{name}': its name is no name of a folder. Rename the model.")
+        raise InputError(f"vehicle '{name}': this is no name of a folder. Give --name.")
     return name
 
 
@@ -148,6 +149,9 @@ def _fly(fleet: Fleet, flown: Dict[str, RunVehicle], out: Optional[Path]) -> Non
     results = {}
     for name, vehicle in flown.items():
         results[name] = {**vehicle.summarize(elapsed), **clearance.summarize(name)}
+        if fleet.warnings:
+            unsimulated = [*results[name].get("unsimulated", []), "contact between vehicles"]
+            results[name]["unsimulated"] = unsimulated
     rows = {name: describe_result(result) for name, result in results.items()}
     files = {name: flown[name].write_results(logs[name], rows[name]) for name in flown}
     shared = [] if out is None else _write_shared(out, flown, rows)

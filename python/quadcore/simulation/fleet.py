@@ -68,7 +68,8 @@ class Fleet(_core.Fleet):
 
     def __init__(self, vehicles: Union[Sequence[Simulation], Mapping[str, Simulation]]) -> None:
         if not isinstance(vehicles, Mapping):
-            vehicles = name_vehicles(vehicles)
+            names = [v.model.name if isinstance(v, Simulation) else "" for v in vehicles]
+            vehicles = name_vehicles(names, vehicles)
         for name, vehicle in vehicles.items():
             if not (isinstance(name, str) and isinstance(vehicle, Simulation)):
                 raise InputError(
@@ -158,15 +159,14 @@ def _collect(rows: Mapping[str, Rows]) -> Dict[str, Log]:
     return {name: each.log() for name, each in rows.items()}
 
 
-def name_vehicles(vehicles: Sequence[Simulation]) -> Dict[str, Simulation]:
-    """Name each vehicle after its model; equal names get a number."""
+def name_vehicles(names: Sequence[str], vehicles: Sequence[Simulation]) -> Dict[str, Simulation]:
+    """Return the vehicles by name; equal names get a number."""
     named: Dict[str, Simulation] = {}
-    for vehicle in vehicles:
-        model = vehicle.model.name if isinstance(vehicle, Simulation) else ""
-        name, number = model, 1
+    for wanted, vehicle in zip(names, vehicles):
+        name, number = wanted, 1
         while name in named:
             number += 1
-            name = f"{model}_{number}"
+            name = f"{wanted}_{number}"
         named[name] = vehicle
     return named
 
