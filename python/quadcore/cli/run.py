@@ -15,7 +15,7 @@ from ..studies.flight_folder import DOCUMENT
 from ..studies.options import OUTPUT, VEHICLE
 from ..studies.output_folder import output_folder
 from ..support import interrupts, parse
-from . import options, reading, run_fleet, run_folder, terminal
+from . import options, reading, run_folder, terminal
 from .parser import add_command, find_group
 from .run_summary import describe_result
 from .run_vehicle import RunVehicle, print_result
@@ -43,7 +43,7 @@ def register(commands: Any) -> None:
     )
     options.add_model(parser, nargs="?")
     find_group(parser, VEHICLE).add_argument(
-        run_fleet.MODEL,
+        "--model",
         dest="models",
         metavar="MODEL",
         action="append",
@@ -93,7 +93,9 @@ def register(commands: Any) -> None:
 def run_flight(arguments: argparse.Namespace) -> None:
     """Simulate, write what was asked for, and print a summary."""
     if arguments.models:
-        return run_fleet.run_fleet(arguments)
+        from .run_fleet import run_fleet  # most flights have one vehicle
+
+        return run_fleet(arguments)
     if arguments.model is None:
         arguments.parser.error("the following arguments are required: MODEL")
     if arguments.name is not None:
