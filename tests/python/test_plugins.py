@@ -144,17 +144,41 @@ def test_a_warning_of_a_plugin_that_is_no_text_can_be_shown(bad):
         bad("warning")
 
 
-def test_a_plugin_built_from_a_changed_header_is_refused_by_name(tmp_path, toy, monkeypatch):
-    changed = tmp_path / "changed"
+@pytest.fixture
+def configure_changed(tmp_path):
+    """Function that changes a source in a copy and returns the copy and the build folder."""
+    changed, made = tmp_path / "changed", tmp_path / "made"
     shutil.copytree(ROOT / "cpp", changed / "cpp")
     shutil.copy(ROOT / "CMakeLists.txt", changed)
-    header = changed / "cpp" / "core" / "include" / "quadcore" / "plugin" / "loads.hpp"
-    text = header.read_text()
-    assert "struct Wrench {\n" in text
-    header.write_text(text.replace("struct Wrench {\n", "struct Wrench {\n  double power = 0;\n"))
-    made = tmp_path / "made"
-    configure = ["cmake", "-S", changed, "-B", made, "-DQUADCORE_WITH_ROS=OFF"]
-    subprocess.run(configure, capture_output=True, check=True)
+
+    def configure(source, before, after):
+        text = (changed / "cpp" / source).read_text()
+        assert before in text
+        (changed / "cpp" / source).write_text(text.replace(before, after))
+        words = ["cmake", "-S", changed, "-B", made, "-DQUADCORE_WITH_ROS=OFF"]
+        subprocess.run(words, capture_output=True, check=True)
+        return changed, made
+
+    return configure
+
+
+def test_tags_and_laws_of_shipped_plugins_are_no_part_of_the_plugin_interface(configure_changed):
+    """So a plugin by others that was built before such a change loads after it."""
+    interface = Path("include") / "quadcore" / "plugin_interface.hpp"
+    installed = (Path(qc.cmake_prefix()) / interface).read_text()
+    for source, tag in (
+        ("plugins/aerodynamic/aerodynamic_plugin.cpp", "dragModel"),
+        ("physics/laws/drag.hpp", "translationalDragCoeff"),
+    ):
+        _, made = configure_changed(source, f'"{tag}"', f'"{tag}OfTomorrow"')
+        assert (made / "cpp" / "core" / interface).read_text() == installed
+
+
+def test_a_plugin_built_from_a_changed_header_is_refused_by_name(
+    configure_changed, tmp_path, toy, monkeypatch
+):
+    loads, wrench = "core/include/quadcore/plugin/loads.hpp", "struct Wrench {\n"
+    changed, made = configure_changed(loads, wrench, f"{wrench}  double power = 0;\n")
     folders = [changed / "cpp" / "core" / "include", made / "cpp" / "core" / "include"]
     flags = "-DCMAKE_CXX_FLAGS=" + " ".join(f"-I{folder}" for folder in folders)
     folder = build(ROOT / "examples" / "side_force_plugin", tmp_path / "plugin", flags)
