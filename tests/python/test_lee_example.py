@@ -120,7 +120,7 @@ def test_the_delay_margin_of_a_plugin_is_searched_on_the_odometry(library, recwa
     size = abs(slow - plugin).max()
     assert abs(slow - slow_plugin).max() < 0.1 * size > 1e-3
     found = qc.evaluate(
-        str(library), "hover", duration=4, margins=True, xacro_args={"sim_slow": 1}
+        str(library), "hover", duration=2, margins=True, xacro_args={"sim_slow": 1}
     )  # fmt: skip
     (row,) = found.margins
     assert row["failure"] == "" and 0.02 < row["delay_margin"] < 0.2

@@ -32,7 +32,7 @@ from quadcore.studies.options import EvaluateOptions
 def test_margins_are_found(capsys):
     found = evaluate(
         ["geometric", lambda t, state, reference: [471, -471, 471, -471]], "circle",
-        duration=2, margins=True,
+        duration=1, margins=True,
     )  # fmt: skip
     first, own = found.margins
     assert first["gain_low"] < 0.8 < 1.3 < first["gain_high"]
