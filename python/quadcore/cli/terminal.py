@@ -31,7 +31,7 @@ def prepare_streams() -> None:
 
 
 def print_message(line: str) -> None:
-    """Print a line on standard error, and ignore that it may be closed."""
+    """Print a line on standard error; do nothing if that is closed."""
     with suppress(OSError):
         print(escape_controls(line), file=sys.stderr)
 

@@ -71,7 +71,7 @@ def read(path: Union[str, Path]) -> Gains:
 
 
 def write(gains: Gains, path: Union[str, Path]) -> None:
-    """Write a gains file, completely or not at all.
+    """Write a gains file; if that fails, an existing file stays as it is.
 
     Parameters
     ----------

@@ -104,7 +104,7 @@ class ControllerPilot(ReferencePilot):
 
     @property
     def program(self) -> str:
-        """Program outside quadcore that was the controller; "" for most controllers."""
+        """External program that acted as the controller; "" for other controllers."""
         return str(getattr(self._controller, "program_summary", ""))
 
     @property

@@ -354,7 +354,7 @@ def list_kinds(kind: Type[Options]) -> Dict[str, Kind]:
 
 
 def explain(about: OptionInfo, default: Any) -> str:
-    """Write meaning and default of an option in one line."""
+    """Write the meaning and the default of an option in one line."""
     plain = f"{default:g}" if isinstance(default, float) else str(default)
     without = about.without or ("" if default in (None, ()) else plain)
     return f"{about.meaning} (default: {without})" if without else about.meaning

@@ -58,7 +58,7 @@ class UserController:
 
 @dataclass(frozen=True)
 class Flight:
-    """A row that is a flight."""
+    """Row of a sweep that simulates a flight."""
 
     row: int
     names: Mapping[str, Any]
@@ -168,7 +168,7 @@ def fly_row(spec: RowSpec) -> Row:
 
 
 def fly_user_code(spec: RowSpec) -> Union[FlownRow, Row]:
-    """Run a row in the process of a user-defined controller; `measure_row` follows in another."""
+    """Run a row in the process of a user-defined controller; another process measures it."""
     if not isinstance(spec, Flight):
         return fly_row(spec)
     flown = []
