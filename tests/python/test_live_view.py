@@ -19,7 +19,7 @@ from test_player import content_of, flown
 
 import quadcore as qc
 from quadcore.report.page_server import PageServer
-from quadcore.simulation.flight import list_columns
+from quadcore.simulation.flight import fly, list_columns
 from quadcore.simulation.live_view import LiveView
 from quadcore.simulation.view import View
 
@@ -72,6 +72,40 @@ def test_a_page_that_reads_nothing_does_not_delay_the_flight():
     assert len(read_events(server)[0]) == 100_000
     stuck.close()
     server.close()
+
+
+def test_a_page_that_closes_is_forgotten_and_the_flight_goes_on():
+    server = PageServer("<html></html>")
+    server.append([[0.0]])
+
+    def send(text):
+        raise BrokenPipeError
+
+    with pytest.raises(BrokenPipeError):
+        server.stream(0, send)
+    server.append([[0.1]])
+    server.end()
+    assert read_events(server)[0] == [[0, 0.0], [1, 0.1]]
+    server.wait_for_pages(600.0)  # the test would hang if it waited for the closed page
+    server.close()
+
+
+def test_a_flight_at_real_time_is_shown_less_than_a_fifth_of_a_second_late():
+    simulation = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
+    live = LiveView(simulation, list_columns(simulation))
+    times, missing = [], []
+
+    def receive(table, wrenches):
+        live.receive(table, wrenches)
+        times.append(simulation.time)
+        missing.append(simulation.time - live.page._rows[-1][0])
+
+    fly(simulation, 0.5, None, 1, receive, pace=1.0)
+    live.close()
+    live.page.close()
+    # A row waits for the end of its piece, and the page for the next row that it gets.
+    assert times[-1] == pytest.approx(0.5)
+    assert np.diff(times).max() + max(missing) < 0.1
 
 
 def test_only_this_machine_is_answered_and_only_the_page_is_there():
