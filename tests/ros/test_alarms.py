@@ -66,6 +66,17 @@ class TestAlarms(unittest.TestCase):
                     send(HOVER)
                 harness.wait_for_status("running")
 
+    def test_healthy_controllers_raise_no_alarm(self):
+        for rate in (50, 500, 1000):
+            slow = ("_real_time_factor:=0.1", f"_set:=odometry.rate={rate}")
+            with flight(*slow), Recording("/rosout", Log) as rosout, commander() as send, Recording(
+                "/odom", Odometry, act=lambda _, send=send: send(HOVER)
+            ):
+                diagnostic("commands", lambda count: count >= 15)
+                begin = harness.time_of_flight().to_sec()
+                diagnostic("time (s)", lambda t, end=begin + 0.3: t >= end)
+            self.assertEqual(warnings_about(rosout, "the controller has stopped"), [], rate)
+
     def test_commands_sent_by_hand_raise_no_alarm(self):
         still = ("_paused:=true", "_real_time_factor:=0")
         with flight(*still), Recording("/rosout", Log) as rosout:
@@ -91,6 +102,11 @@ class TestAlarms(unittest.TestCase):
                     lambda m, end=begin + 0.1: abs(m[-1].header.stamp.to_sec() - end) < 1e-6
                 )
             harness.wait_until(lambda: len(warnings_about(rosout, "/clock jumped")) == 2)
+            time.sleep(1.5)  # a clock that stops and goes on has not jumped
+            send_clock(clock, [0.11 + 0.001 * i for i in range(1, 101)])
+            resumed = odom.wait(lambda m: abs(m[-1].header.stamp.to_sec() - 0.21) < 1e-6)
+            self.assertEqual(len(resumed), len(ahead) + 100)
+            self.assertEqual(len(warnings_about(rosout, "/clock jumped")), 2)
         times = [message.header.stamp.to_sec() for message in ahead]
         self.assertLess(len(times), 400)  # nothing between was simulated
         fall = 1000 - ahead[-1].pose.pose.position.z

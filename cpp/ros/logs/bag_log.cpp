@@ -8,7 +8,6 @@
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "ros_types.hpp"
-#include "vehicle_messages.hpp"
 
 namespace quadcore::node {
 namespace {
@@ -47,7 +46,9 @@ BagLog::BagLog(const std::string& path, const Simulation& simulation, LogRow row
 
 void BagLog::add(const Simulation& simulation) {
   const ros::Time time = to_ros(simulation.time());
-  add_state(simulation.state(), time);
+  const VehicleState& state = simulation.state();
+  add_truth(state, time);
+  if (slow_rate_.due(simulation.time(), false)) add_slow(state, time);
   for (Logged& logged : topics_) {
     const Topic& topic = simulation.topics()[logged.index];
     if (topic.count > 0 && topic.stamp != logged.stamp) add(topic, logged);
@@ -57,9 +58,7 @@ void BagLog::add(const Simulation& simulation) {
   if (!bag_.is_whole() && error().empty()) fail(describe_truncation(path_));
 }
 
-void BagLog::add_state(const VehicleState& state, const ros::Time& time) {
-  clock_.clock = time;
-  bag_.write(clock_number_, to_bag_time(time), clock_);
+void BagLog::add_truth(const VehicleState& state, const ros::Time& time) {
   messages::Odometry truth;
   truth.position = state.position;
   truth.orientation = state.orientation;
@@ -68,6 +67,11 @@ void BagLog::add_state(const VehicleState& state, const ros::Time& time) {
   odometry_.header.stamp = time;
   to_ros(truth, odometry_);
   bag_.write(truth_number_, to_bag_time(time), odometry_);
+}
+
+void BagLog::add_slow(const VehicleState& state, const ros::Time& time) {
+  clock_.clock = time;
+  bag_.write(clock_number_, to_bag_time(time), clock_);
   tf_.transforms.front().header.stamp = time;
   to_ros(state, tf_.transforms.front().transform);
   bag_.write(tf_number_, to_bag_time(time), tf_);

@@ -15,6 +15,7 @@ namespace quadcore::node {
 
 constexpr const char* truth_topic = "ground_truth/odometry";
 constexpr const char* joint_states_topic = "joint_states";
+constexpr double joint_states_rate = 50;  ///< messages per simulated second
 
 /// Returns the transform of a frame that coincides with its parent.
 inline geometry_msgs::TransformStamped make_identity_transform(const std::string& parent,

@@ -2,7 +2,6 @@
 
 #include "messages.hpp"
 #include "quadcore/urdf_tree.hpp"
-#include "vehicle_messages.hpp"
 
 namespace quadcore::node {
 namespace {

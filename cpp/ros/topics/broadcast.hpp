@@ -18,6 +18,7 @@
 #include "path.hpp"
 #include "quadcore/simulation.hpp"
 #include "topic_broadcast.hpp"
+#include "vehicle_messages.hpp"
 
 namespace quadcore::node {
 
@@ -54,7 +55,7 @@ class Broadcast {
 
   const OdometryTopic odometry_topic_;
   double sent_ = 0;  ///< count of the last odometry message sent
-  MessageRate joint_states_due_{50};
+  MessageRate joint_states_due_{joint_states_rate};
 
   ClockPublisher clock_publisher_;
   OfferingPublisher<nav_msgs::Odometry> odometry_publisher_;

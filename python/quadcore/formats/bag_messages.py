@@ -15,6 +15,7 @@ _ODOMETRY = "nav_msgs/msg/Odometry"
 _JOINTS = "sensor_msgs/msg/JointState"
 _TF = "tf2_msgs/msg/TFMessage"
 _LEAST_VARIANCE = 1e-12  # as the node has it
+_SLOW_RATE = 50  # 1/s, of clock, tf and joint states in a bag of ROS 1, as the node has it
 
 
 class NodeMessages(NamedTuple):
@@ -81,13 +82,18 @@ class Messages:
             kinds[f"/{topic}"] = _ODOMETRY if fields == _FIELDS else ARRAY
             layouts[topic] = self.make_layout([", ".join(fields)], len(fields))
         sent: Dict[str, float] = {}  # stamps
+        counted = -1  # periods of the slow messages
 
         def at(row: np.ndarray) -> Iterator[Tuple[str, float, bytes]]:
+            nonlocal counted
             stamp = self._stamp(row[0])
-            yield "/clock", row[0], self._bytes(self._type(_CLOCK)(stamp), _CLOCK)
             yield "/ground_truth/odometry", row[0], self._odometry(stamp, row[1:14], [0.0] * 4)
-            yield "/tf", row[0], self._transform(stamp, row[1:8])
-            yield "/joint_states", row[0], self._joint_states(stamp, row[14 : 14 + rotors])
+            count = int(row[0] * _SLOW_RATE + 1e-6)
+            if count != counted or not self._sequence:  # ROS 2 gets them with each row
+                counted = count
+                yield "/clock", row[0], self._bytes(self._type(_CLOCK)(stamp), _CLOCK)
+                yield "/tf", row[0], self._transform(stamp, row[1:8])
+                yield "/joint_states", row[0], self._joint_states(stamp, row[14 : 14 + rotors])
             for topic, places in topics.items():
                 values = row[places]
                 has_stamp = _is_stamp(columns[places[0]])
