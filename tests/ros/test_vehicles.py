@@ -44,7 +44,7 @@ class TestVehicles(unittest.TestCase):
     def test_all_links_are_in_one_tree_and_no_transform_is_repeated(self):
         for vehicle in VEHICLES:
             with self.subTest(vehicle.name):
-                urdf = load_description(str(vehicle)).text
+                urdf = load_description(str(vehicle), {}).text
                 parents, stamps = self.fly(urdf)
                 links = {link.get("name") for link in ElementTree.fromstring(urdf).iter("link")}
                 self.assertLessEqual(links, set(parents))
