@@ -7,6 +7,7 @@ import shutil
 
 import pages
 import pytest
+from printed import check_printed
 
 
 def name_of(page):
@@ -32,3 +33,16 @@ def test_every_command_of_the_readme_flies_from_a_clone_and_leaves_what_it_says(
     assert "arning" not in said
     assert (tmp_path / "out" / "gusts" / "report.html").exists()
     assert (tmp_path / "out" / "hover" / "path.png").exists()
+
+
+@pytest.mark.parametrize("printed", ["mass   1.01 kg\nleft out\n", "mass 0.99 kg\n3 rows\n"])
+def test_shown_numbers_may_differ_by_the_tolerance(printed):
+    check_printed("mass  1.000 kg\n...\n", printed, 0.02)
+
+
+@pytest.mark.parametrize(
+    "printed", ["mass 1.03 kg\nend\n", "mass 1.00 g\nend\n", "mass 1.00 kg\n", "a mass 1.00 kg\n\n"]
+)
+def test_other_words_and_numbers_are_no_shown_output(printed):
+    with pytest.raises(AssertionError, match="the page shows"):
+        check_printed("mass  1.000 kg\n...\n", printed, 0.02)
