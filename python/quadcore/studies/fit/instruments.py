@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Dict, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 
 if TYPE_CHECKING:
-    from .flight_fit import Search
+    from .window_search import Search
 
 _ROUNDS = 12
 _RELEASED = 3

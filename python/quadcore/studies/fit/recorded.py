@@ -9,13 +9,14 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 from ..._core import InputError, Model
 from .coordinates import check_bodies
 from .fitted_model import FittedModel
-from .flight_fit import FlightFit, Progress, fit_flights
+from .flight_fit import FlightFit, fit_flights
 from .inputs import DELAY, INPUTS, MAP, guess_inputs, split_inputs
 from .judgement import Judgement, judge_models
 from .predictor import find_plugin
 from .prepared import PreparedFlight, check_copies, prepare_flight
 from .problem import check_free_names, make_parameter
 from .replay import Replay, replay_flight
+from .window_search import Progress
 
 _TAGS = (
     "kp",
