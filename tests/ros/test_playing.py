@@ -68,6 +68,18 @@ class TestPlaying(unittest.TestCase):
                 commands.wait(lambda m: len(m) > STEPS)
         return bag
 
+    def test_a_bag_of_the_node_is_replayed_byte_for_byte(self):
+        flown, again = self.folder / "flown.bag", self.folder / "again.bag"
+        commands = "_log_topics:=vel_cmd"
+        with flight(*LOCKSTEP, commands, f"_log:={flown}"), commander() as send, Recording(
+            "/odom", Odometry, act=lambda m: send(altitude_controller(m))
+        ):
+            step(STEPS)
+        player = Process("bag_player.py", str(flown), "vel_cmd:=quadrotor/vel_cmd")
+        with flight(*LOCKSTEP, commands, f"_log:={again}"), player:
+            step(STEPS)
+        self.assertEqual(flown.read_bytes(), again.read_bytes())
+
     def test_a_played_bag_gives_the_same_log(self):
         recorded, played = self.folder / "recorded.csv", self.folder / "played.csv"
         bag = self.record(recorded)
