@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, Iterator
 from xml.dom import expatbuilder, minidom
 from xml.parsers import expat
-from xml.sax.saxutils import escape, quoteattr
 
 from .xml_source import Origin, check, make_syntax_error
 
@@ -69,6 +68,8 @@ class _Builder(expatbuilder.ExpatBuilderNS):
 
 
 def _write_lines(element: minidom.Element) -> Iterator[tuple[str, Origin]]:
+    from xml.sax.saxutils import escape, quoteattr  # imports urllib.request, which is slow
+
     place = find_origin(element)
     assert place is not None
     tag = element.tagName

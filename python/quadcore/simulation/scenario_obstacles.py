@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from typing import Dict, List, NamedTuple, Sequence
-from xml.sax.saxutils import quoteattr
 
 import yaml
 
@@ -37,6 +36,8 @@ class PlacedObstacle(NamedTuple):
 
     def write(self) -> str:
         """Return its model as SDF in one line."""
+        from xml.sax.saxutils import quoteattr  # imports urllib.request, which is slow
+
         geometry = KINDS[self.kind].format(*self.sizes)
         return (
             f"<model name={quoteattr(self.name)}><static>1</static><pose>{' '.join(self.pose)}"

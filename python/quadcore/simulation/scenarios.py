@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 from xml.parsers import expat
-from xml.sax.saxutils import escape, quoteattr
 
 import yaml
 
@@ -300,6 +299,8 @@ def _insert_plugins(
     document: Document, end: int, added: Sequence[PluginEntry], file: str
 ) -> Document:
     """Insert plugins into a model; messages about their lines name the scenario."""
+    from xml.sax.saxutils import escape, quoteattr  # imports urllib.request, which is slow
+
     before, after = document.text[:end], document.text[end:]
     count = document.text.count("\n") + 1
     lines: List[Any] = document.lines or [(document.name, i + 1) for i in range(count)]

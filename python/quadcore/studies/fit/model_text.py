@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Collection, Dict, List, Mapping, Optional, Tuple
 from xml.parsers import expat
-from xml.sax.saxutils import escape
 
 from ... import _core
 from ..._core import Document, Model
@@ -31,6 +30,8 @@ def write_values(
     InputError
         If a value is invalid for the model.
     """
+    from xml.sax.saxutils import escape  # imports urllib.request, which is slow
+
     changed, tags = apply_link_values(
         model, {name: format_value(value) for name, value in values.items()}
     )
