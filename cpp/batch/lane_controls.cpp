@@ -148,9 +148,9 @@ void LaneControls::call(double period) {
       &control::command_block<1>, &control::command_block<2>, &control::command_block<4>,
       &control::command_block<8>};
   std::int64_t complete[widest_lanes];
-  calls[width_]({like_->wrench_controller.kind, like_->wrench_controller.switches, rotors_,
-                 like_->wrench_controller.numbers.size(), like_->state.size(), period, !has_begun_,
-                 numbers_.data(), actuators_.data(), measured_.data(), wanted_.data(),
+  calls[width_]({like_->wrench_controller.kind, like_->wrench_controller.switches, widest_lanes,
+                 rotors_, like_->wrench_controller.numbers.size(), like_->state.size(), period,
+                 !has_begun_, numbers_.data(), actuators_.data(), measured_.data(), wanted_.data(),
                  state_.data(), demand_.data(), speeds_.data(), complete});
   has_begun_ = true;
   for (const Member& member : members_) {

@@ -16,21 +16,25 @@ class PackTable {
   PackTable(int width, std::size_t rows)
       : width_(static_cast<std::size_t>(width)), rows_(rows), numbers_(rows * widest_lanes) {}
 
-  double& at(std::size_t row, std::size_t lane) {
-    return numbers_[(lane / width_ * rows_ + row) * width_ + lane % width_];
-  }
+  double& at(std::size_t row, std::size_t lane) { return first(lane)[row * width_]; }
   double* data() { return numbers_.data(); }
   /// Convert to and from the numbers of one vehicle.
   void put(std::size_t lane, const double* column) {
-    for (std::size_t row = 0; row < rows_; ++row) at(row, lane) = column[row];
+    double* const to = first(lane);
+    for (std::size_t row = 0; row < rows_; ++row) to[row * width_] = column[row];
   }
   void get(std::size_t lane, double* column) {
-    for (std::size_t row = 0; row < rows_; ++row) column[row] = at(row, lane);
+    const double* const from = first(lane);
+    for (std::size_t row = 0; row < rows_; ++row) column[row] = from[row * width_];
   }
   /// Set the numbers of all vehicles.
   void fill(const double* column);
 
  private:
+  double* first(std::size_t lane) {
+    return &numbers_[lane / width_ * rows_ * width_ + lane % width_];
+  }
+
   std::size_t width_, rows_;
   LaneNumbers numbers_;
 };

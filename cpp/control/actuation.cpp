@@ -63,6 +63,8 @@ std::size_t Actuation::state_size(std::size_t rotors) { return Row::count(rotors
 
 bool Actuation::saturated(const double* state) { return state[Row::saturated] != 0; }
 
+bool Actuation::has_begun(const double* state) { return state[Row::begun] != 0; }
+
 void Actuation::set_remaining(std::size_t rotor, double left, double* state) const {
   state[Row::lost(numbers_->rotors.size()) + rotor] = 1 - left;
 }
@@ -77,7 +79,7 @@ Actuation::Now Actuation::now(const double* state) const {
   for (std::size_t i = 0; i < rotors.size(); ++i) {
     add_rotor(rotors[i], state[Row::speeds + i], 1 - lost(state)[i], now);
   }
-  return {state[Row::begun] == 0, saturated(state), demand_of(now.exerted), vector_of(now.h_F)};
+  return {!has_begun(state), saturated(state), demand_of(now.exerted), vector_of(now.h_F)};
 }
 
 void Actuation::command(double period, const Demand& demand, double* state, double* speeds) const {
@@ -99,11 +101,14 @@ std::vector<double> Actuation::list_numbers() const {
   return numbers;
 }
 
-bool Actuation::can_control_yaw(double thrust, const double* state) const {
+bool Actuation::are_whole(const double* state) const {
   const double* const lost_now = lost(state);
-  const bool are_whole = std::all_of(lost_now, lost_now + numbers_->rotors.size(),
-                                     [](double share) { return share == 0; });
-  return are_whole || allocation_.can_control_yaw(thrust, lost_now);
+  return std::all_of(lost_now, lost_now + numbers_->rotors.size(),
+                     [](double share) { return share == 0; });
+}
+
+bool Actuation::can_control_yaw(double thrust, const double* state) const {
+  return are_whole(state) || allocation_.can_control_yaw(thrust, lost(state));
 }
 
 /// Turn wanted speeds into commands and update the modelled speeds. Returns whether the commands
@@ -111,12 +116,12 @@ bool Actuation::can_control_yaw(double thrust, const double* state) const {
 bool Actuation::lead(double period, double* state, double* speeds) const {
   const std::vector<RotorNumbers<double>>& rotors = numbers_->rotors;
   double* const modelled = state + Row::speeds;
-  if (period != state[Row::period]) find_shares(period, state);
+  set_period(period, state);
   const double* const shares = state + Row::shares(rotors.size());
   bool all = true;
   for (std::size_t i = 0; i < rotors.size(); ++i) {
     const bool stands = lost(state)[i] == 1;
-    if (stands || state[Row::begun] == 0) modelled[i] = speeds[i];
+    if (stands || !has_begun(state)) modelled[i] = speeds[i];
     if (stands) continue;
     const LedNumbers<double> led =
         control::lead(rotors[i], speeds[i], modelled[i], state[Row::wanted_share], shares[i]);
@@ -127,7 +132,8 @@ bool Actuation::lead(double period, double* state, double* speeds) const {
   return all;
 }
 
-void Actuation::find_shares(double period, double* state) const {
+void Actuation::set_period(double period, double* state) const {
+  if (period == state[Row::period]) return;
   const MotorLead& lead = numbers_->lead;
   double* const shares = state + Row::shares(numbers_->rotors.size());
   for (std::size_t i = 0; i < numbers_->rotors.size(); ++i) {

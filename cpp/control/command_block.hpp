@@ -18,11 +18,12 @@ enum class ControllerKind { geometric, indi, lqr };
 template <template <class> class Numbers>
 constexpr std::size_t size_of = sizeof(Numbers<double>) / sizeof(double);
 
-/// Controllers of up to widest_lanes vehicles. A table contains a struct of packs of W vehicles,
+/// Controllers of vehicles. A table contains a struct of packs of W vehicles,
 /// then that of the next W vehicles.
 struct CommandBlock {
   ControllerKind kind;
   ControllerSwitches switches;
+  std::size_t vehicles;
   std::size_t rotors, number_rows, state_rows;
   double period;
   bool begins;
@@ -38,7 +39,7 @@ struct CommandBlock {
   std::int64_t* complete;
 };
 
-/// Call the controllers, W at once.
+/// Call the controllers, W at once. The unused vehicles of the last pack are computed as well.
 template <int W>
 void command_block(const CommandBlock& block);
 

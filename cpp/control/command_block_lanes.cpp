@@ -85,7 +85,7 @@ QUADCORE_LAW void command(const CommandBlock& block, std::size_t part) {
 
 template <int W>
 void command_block(const CommandBlock& block) {
-  for (std::size_t part = 0; part < widest_lanes / W; ++part) {
+  for (std::size_t part = 0; part * W < block.vehicles; ++part) {
     command<laws::Pack<W>>(block, part);
   }
 }

@@ -55,7 +55,7 @@ std::shared_ptr<const LaneController> Controller::in_lanes(double period) const 
   if (!in_lanes) return nullptr;
   LaneController made{*in_lanes, rotors(), actuation_.list_numbers(),
                       std::vector<double>(state_size())};
-  actuation_.find_shares(period, made.state.data());
+  actuation_.set_period(period, made.state.data());
   return std::make_shared<LaneController>(std::move(made));
 }
 

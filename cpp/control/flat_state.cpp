@@ -11,7 +11,8 @@ FlatState flat_state(const Reference& wanted, const ModelledVehicle& model, bool
   FlatTable table(model, with_drag);
   table.set(0, wanted);
   table.solve(1);
-  std::optional<FlatState> flat = table.state(0);
+  std::optional<FlatState> flat;
+  table.get_state(0, flat);
   if (!flat) {
     throw Error(
         "the reference has no defined attitude: it is in free fall, or its thrust points along its "

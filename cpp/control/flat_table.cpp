@@ -55,19 +55,18 @@ void FlatTable::get(std::size_t row, std::size_t column, Vector&& vector) const 
   }
 }
 
-std::optional<FlatState> FlatTable::state(std::size_t column) const {
-  FlatState flat;
+void FlatTable::get_state(std::size_t column, std::optional<FlatState>& state) const {
+  FlatState& flat = state ? *state : state.emplace();
   for (int i = 0; i < 3; ++i) {
     get(FlatRow::R_WF + 3 * static_cast<std::size_t>(i), column, flat.R_WF.col(i));
   }
-  if (!flat.R_WF.allFinite()) return {};
+  if (!flat.R_WF.allFinite()) return state.reset();
   get(FlatRow::w_WF_F, column, flat.w_WF_F);
   get(FlatRow::dw_WF_F, column, flat.dw_WF_F);
   get(FlatRow::a_FCcm_W, column, flat.a_FCcm_W);
   flat.across_W << -rows_[FlatRow::sine * widest_lanes + column],
       rows_[FlatRow::cosine * widest_lanes + column], 0;
   flat.thrust = rows_[FlatRow::thrust * widest_lanes + column];
-  return flat;
 }
 
 }  // namespace quadcore::control

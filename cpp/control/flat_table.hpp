@@ -16,8 +16,8 @@ class FlatTable {
   void set(std::size_t column, const Reference& wanted);
   /// Compute the flat states of the first columns.
   void solve(std::size_t columns);
-  /// Return the flat state of a column, or nothing if the attitude is undefined.
-  std::optional<FlatState> state(std::size_t column) const;
+  /// Write the flat state of a column, or nothing if the attitude is undefined.
+  void get_state(std::size_t column, std::optional<FlatState>& state) const;
 
  private:
   double* at(std::size_t row, std::size_t column) { return &rows_[row * widest_lanes + column]; }

@@ -43,7 +43,13 @@ void GuidedController::command(double period, std::size_t odometry, const Refere
   const auto now = simulation_.topics().read<Odometry>(odometry);
   const ReferencePreview::Point& point = preview_.at(simulation_.time(), reference, list_times);
   hear_of_health();
-  controller_.command(period, now, point.wanted, state_.data(), speeds,
+  double* const state = state_.data();
+  const bool is_defined = point.flat || controller_.feeds() == WrenchController::Feeds::nothing;
+  if (is_defined && controller_.has_whole_rotors(state) &&
+      single_lane_.prepare(period, controller_, state)) {
+    return single_lane_.command(controller_, now, point, state, speeds);
+  }
+  controller_.command(period, now, point.wanted, state, speeds,
                       point.flat ? &*point.flat : nullptr);
 }
 

@@ -25,19 +25,20 @@ const ReferencePreview::Point& ReferencePreview::at(double time, const Reference
 }
 
 void ReferencePreview::look_ahead(const ReferenceShape& reference, const ListTimes& list_times) {
-  points_.clear();
-  reference_ = &reference;
+  reference_ = nullptr;
   present_ = 0;
   const std::size_t count = table_ ? widest_lanes : 1;
   double times[widest_lanes];
   list_times(times, count);
+  points_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    points_.push_back({times[i], reference.at(times[i]), {}});
-    if (table_) table_->set(i, points_.back().wanted);
+    points_[i].time = times[i];
+    points_[i].wanted = reference.at(times[i]);
+    if (table_) table_->set(i, points_[i].wanted);
   }
-  if (!table_) return;
-  table_->solve(count);
-  for (std::size_t i = 0; i < count; ++i) points_[i].flat = table_->state(i);
+  if (table_) table_->solve(count);
+  for (std::size_t i = 0; table_ && i < count; ++i) table_->get_state(i, points_[i].flat);
+  reference_ = &reference;
 }
 
 }  // namespace quadcore::control

@@ -136,7 +136,8 @@ TEST_CASE("flat states of several references are bit-identical to those of each 
       table.solve(widest_lanes);
       for (std::size_t i = 0; i < widest_lanes; ++i) {
         CAPTURE(i);
-        const std::optional<FlatState> one = table.state(i);
+        std::optional<FlatState> one;
+        table.get_state(i, one);
         REQUIRE(one);
         const FlatState alone = flat_state(wanted(i), model, with_drag);
         CHECK(one->R_WF == alone.R_WF);
@@ -156,6 +157,9 @@ TEST_CASE("a reference without a defined attitude has no flat state next to othe
   table.set(0, falling);
   table.set(1, Reference());
   table.solve(2);
-  CHECK_FALSE(table.state(0));
-  CHECK(table.state(1));
+  std::optional<FlatState> flat;
+  table.get_state(0, flat);
+  CHECK_FALSE(flat);
+  table.get_state(1, flat);
+  CHECK(flat);
 }

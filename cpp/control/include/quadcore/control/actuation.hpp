@@ -28,6 +28,10 @@ class Actuation {
   Now now(const double* state) const;
   /// Return whether the last demand could not be met.
   static bool saturated(const double* state);
+  /// Return whether a demand has been given.
+  static bool has_begun(const double* state);
+  /// Return whether no rotor has lost thrust or torque.
+  bool are_whole(const double* state) const;
 
   /// Set the remaining fraction of a rotor's thrust and torque.
   void set_remaining(std::size_t rotor, double left, double* state) const;
@@ -37,7 +41,7 @@ class Actuation {
   /// Return the numbers of the rotors for the lanes, see CommandBlock::actuators.
   std::vector<double> list_numbers() const;
   /// Set the fractions of a change within a period, which the state contains.
-  void find_shares(double period, double* state) const;
+  void set_period(double period, double* state) const;
   /// Compute the speeds to command until the next call.
   /// \param period  time since the last call and until the next [s]
   /// \param speeds  (rotors,) signed [rad/s]

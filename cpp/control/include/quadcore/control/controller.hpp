@@ -48,6 +48,12 @@ class Controller {
   void set_remaining(std::size_t rotor, double left, double* state) const {
     actuation_.set_remaining(rotor, left, state);
   }
+  /// Set the period of the next calls, from which the state's fractions of a change follow.
+  void set_period(double period, double* state) const { actuation_.set_period(period, state); }
+  /// Return whether a demand has been given.
+  static bool has_begun(const double* state) { return Actuation::has_begun(state); }
+  /// Return whether no rotor has lost thrust or torque.
+  bool has_whole_rotors(const double* state) const { return actuation_.are_whole(state); }
   /// Return whether the last demand could not be met.
   static bool saturated(const double* state) { return Actuation::saturated(state); }
 

@@ -9,6 +9,7 @@
 #include "quadcore/control/reference.hpp"
 #include "quadcore/control/reference_preview.hpp"
 #include "quadcore/control/rotor_health.hpp"
+#include "quadcore/control/single_lane.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
@@ -48,6 +49,7 @@ class GuidedController {
   const Simulation& simulation_;
   Controller controller_;
   ReferencePreview preview_;
+  SingleLane single_lane_;
   RotorHealth health_of_;
   int health_;  ///< topic; -1: no plugin publishes it
   std::vector<double> state_;
