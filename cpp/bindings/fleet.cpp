@@ -80,7 +80,7 @@ void advance_fleet(BoundFleet& bound, std::int64_t n, const std::vector<BoundFli
 }
 
 /// Steps between checks for signals.
-constexpr std::int64_t steps_between_signals = 1000;
+constexpr std::int64_t fleet_steps_between_signals = 1000;
 
 void step_fleet(BoundFleet& bound, std::int64_t n) {
   if (n < 0) {
@@ -88,7 +88,7 @@ void step_fleet(BoundFleet& bound, std::int64_t n) {
   }
   const FleetLock lock(bound, "step()");
   while (n > 0) {
-    const std::int64_t steps = std::min(n, steps_between_signals);
+    const std::int64_t steps = std::min(n, fleet_steps_between_signals);
     advance_fleet(bound, steps, {});
     n -= steps;
     if (n > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
