@@ -27,8 +27,8 @@ class Clearance {
 
   /// The pose of a vehicle's frame in the world.
   struct FramePose {
-    Vector3d position_W;
-    Quaterniond orientation_W;
+    Vector3d position_W;        ///< [m]
+    Quaterniond orientation_W;  ///< of the frame
   };
   /// Return the distance of this vehicle's shapes from those of another one, or `known` if it is
   /// not shorter [m]; 0 if they overlap.

@@ -73,8 +73,8 @@ class SharedWorld {
 
   /// The force field of a vehicle, and the time at which its step starts [s].
   struct TimedForces {
-    double time;
-    const ForceField* field;
+    double time;              ///< [s]
+    const ForceField* field;  ///< of the vehicle
   };
   /// Advance all vehicles by dt.
   virtual void step(double dt, const std::vector<TimedForces>& forces);
@@ -91,7 +91,7 @@ class SharedWorld {
   virtual std::vector<std::string> warnings() const;
 
  protected:
-  std::size_t current_ = 0;
+  std::size_t current_ = 0;  ///< result of current()
 
  private:
   std::vector<Engine*> engines_;

@@ -13,9 +13,9 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// Complete state of a fleet.
 struct FleetSnapshot {
-  std::vector<Snapshot> vehicles;
-  std::vector<double> world;  ///< result of SharedWorld::save()
-  std::string failure;        ///< reason of a failure, or ""
+  std::vector<Snapshot> vehicles;  ///< of each vehicle
+  std::vector<double> world;       ///< result of SharedWorld::save()
+  std::string failure;             ///< reason of a failure, or ""
 };
 
 /// Several vehicles in one world. Each is a simulation with its own plugins, topics and seed; only
@@ -32,13 +32,13 @@ class Fleet {
   /// and reset make the fleet usable again.
   void step();
 
-  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<std::string>& names() const { return names_; }  ///< of the vehicles
   /// Return the present motion of the world's free bodies, in the order of World::free_bodies.
   std::vector<FreeBodyState> free_bodies() const { return shared_->free_bodies(); }
   /// Return warnings about the vehicles together.
   std::vector<std::string> warnings() const { return shared_->warnings(); }
 
-  FleetSnapshot snapshot() const;
+  FleetSnapshot snapshot() const;  ///< of the present state
   /// Throws InputError if the snapshot belongs to another fleet.
   void restore(const FleetSnapshot& snapshot);
   /// Reset to the initial state, each vehicle with its present seed.

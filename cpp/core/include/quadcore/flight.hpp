@@ -39,6 +39,7 @@ class Flight {
 
   /// \name Parts of advance(), for vehicles that a Fleet advances
   /// @{
+
   /// Publish the command that is due. Returns the number of steps, at most n, until the next.
   std::int64_t prepare(std::int64_t n);
   /// Log the present state if it is due after so many steps.
