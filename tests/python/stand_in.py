@@ -22,9 +22,11 @@ def quadcore(words):
     parser = make_parser()
     given = parser.parse_args(words)
     known = parser._subparsers._group_actions[0].choices[words[0]]._option_string_actions
+    # Options behind the first --model of a fleet are those of one vehicle.
+    end = words.index("--model") if words[0] == "run" and "--model" in words else len(words)
     for option, value in CHANGES[os.environ["QUADCORE_SHORT"]].items():
         if option in known and not getattr(given, "plant", None):  # that has its own length
-            words += [option] + ([value] if value else [])
+            words[end:end] = [option] + ([value] if value else [])
     if getattr(given, "dask", None):  # there is no such cluster
         at = words.index("--dask")
         del words[at : at + 2]

@@ -30,6 +30,8 @@ _PACKAGES = {"collada": "pycollada", "yaml": "pyyaml"}
 
 _OPTIONAL = {
     "rosbags": ("bag", "reads and writes .bag files"),
+    "pymavlink": ("px4", "exchanges messages with PX4"),
+    "pygeomag": ("px4", "computes the magnetic field of the Earth"),
     "pyulog": ("ulog", "reads .ulg files of PX4"),
     "gymnasium": ("gym", "runs reinforcement learning environments"),
     "h5py": ("matlab", "reads .mat files of version 7.3"),
