@@ -72,4 +72,4 @@ def test_the_command_prints_the_map_and_exits_with_2_if_something_is_wrong(tmp_p
 
 def test_the_command_lists_the_bridges():
     listed = run_command("autopilot", "list").stdout.splitlines()
-    assert [line.split()[0] for line in listed] == ["ardupilot", "betaflight", "crazyflie"]
+    assert [line.split()[0] for line in listed] == ["ardupilot", "betaflight", "crazyflie", "px4"]
