@@ -75,8 +75,8 @@ class TestPlaying(unittest.TestCase):
             "/odom", Odometry, act=lambda m: send(altitude_controller(m))
         ):
             step(STEPS)
-        player = Process("bag_player.py", str(flown), "vel_cmd:=quadrotor/vel_cmd")
-        with flight(*LOCKSTEP, commands, f"_log:={again}"), player:
+        player = ("bag_player.py", str(flown), "vel_cmd:=quadrotor/vel_cmd")
+        with flight(*LOCKSTEP, commands, f"_log:={again}"), Process(*player):
             step(STEPS)
         self.assertEqual(flown.read_bytes(), again.read_bytes())
 
