@@ -32,7 +32,6 @@ html_title = f"quadcore {release}"
 html_copy_source = False
 html_static_path = ["static"]
 html_css_files = ["site.css"]
-html_js_files = ["embedded.js"]
 html_search_scorer = str(DOCS / "static" / "search_scorer.js")
 html_extra_path = [str(MADE / "extra")]
 

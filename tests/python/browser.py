@@ -80,15 +80,7 @@ window.onload = async () => {
 """
 
 STICK_OUT = """
-async function look(view, inside, width) {
-  for (const frame of inside.querySelectorAll("iframe")) {
-    const within = frame.contentWindow, root = frame.contentDocument.documentElement;
-    while (!within.quadcore) await new Promise((resolve) => setTimeout(resolve, 10));
-    await within.quadcore.ready;
-    for (let i = 0; i < 100 && root.scrollHeight > frame.clientHeight + 1; ++i) {
-      await new Promise((resolve) => setTimeout(resolve, 20));
-    }
-  }
+function look(view, inside, width) {
   const out = [];
   const scrolls = (e) => view.getComputedStyle(e).overflowX !== "visible";
   const hidden = (e) => e && (scrolls(e) || hidden(e.parentElement));
