@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import functools
+import os
 import subprocess
 import sys
 import tempfile
@@ -14,16 +15,21 @@ from quadcore.studies import executor
 QUADCORE = [sys.executable, "-m", "quadcore"]
 FALL = ["run", "quadrotor", "--engine", "eigen", "--duration", "0.05"]
 FORKS = Path(__file__).with_name("forks.py")
+# As they were before any test changed them: the process outlives the test that starts it.
+ENVIRONMENT, TEMPORARY = dict(os.environ), tempfile.gettempdir()
 LONG = 120.0  # s; generous, because waiting costs nothing when things work
 
 
 @functools.lru_cache(maxsize=None)
 def start_server():
     """Start the process whose forks run quadcore and Python, and return its address."""
-    folder = tempfile.TemporaryDirectory(prefix="forks")
+    folder = tempfile.TemporaryDirectory(prefix="forks", dir=TEMPORARY)
     address = f"{folder.name}/socket"
     server = subprocess.Popen(
-        [sys.executable, str(FORKS), address], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        [sys.executable, str(FORKS), address],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=ENVIRONMENT,
     )
     assert server.stdout.readline() == b"ready\n"
     atexit.register(lambda: (server.stdin.close(), server.wait(), folder.cleanup()))
