@@ -6,8 +6,13 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from processes import LONG
+
+import quadcore as qc
+from quadcore.autopilots import read_autopilot
+from quadcore.support.rotation import turn
 
 STAND_IN = Path(__file__).with_name("betaflight_stand_in.py")
 PORTS = '"{motors}", "{state}", "{radio}", "{msp}"'
@@ -24,6 +29,24 @@ def write_stack(folder, *faults, more="", ports=PORTS, name="stack.yaml"):
         f"lockstep: plain\nhold: 1.6\n{more}"
     )
     return path
+
+
+def fly_iris(stack, duration, reference="hover", dt=0.001):
+    """Fly an iris with the autopilot of a stack file, from the full state of the reference."""
+    return qc.Simulation("iris", engine="eigen", dt=dt).run(
+        duration,
+        controller=read_autopilot(stack),
+        reference=qc.references.parse(reference),
+        on_reference=True,
+    )
+
+
+def turn_in_all_axes():
+    """Return an orientation that is not the same in any two axes."""
+    orientation = np.array([0.0, 0, 0, 1])
+    for step in ([0, 0, 0.7], [0, -0.5, 0], [0.3, 0, 0]):
+        orientation = turn(orientation, np.array(step))
+    return orientation
 
 
 @pytest.fixture(autouse=True)

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from autopilot_files import nothing_remains  # noqa: F401
+from autopilot_files import fly_iris as fly
+from autopilot_files import nothing_remains, turn_in_all_axes  # noqa: F401
 from processes import run_command
 
 import quadcore as qc
 from quadcore.autopilots import Readings, Sticks, read_autopilot
 from quadcore.autopilots.ardupilot import convert_readings, pack_radio, pack_state, read_servos
-from quadcore.support.rotation import to_matrix, turn
+from quadcore.support.rotation import to_matrix
 
 STAND_IN = Path(__file__).with_name("ardupilot_stand_in.py")
 FLIGHT = ["run", "iris", "--engine", "eigen", "--dt", "0.001", "--quiet"]
@@ -30,19 +31,8 @@ def write_stack(folder, *faults, hold=3.2):
     return path
 
 
-def fly(stack, duration, reference="hover"):
-    return qc.Simulation("iris", engine="eigen", dt=0.001).run(
-        duration,
-        controller=read_autopilot(stack),
-        reference=qc.references.parse(reference),
-        on_reference=True,
-    )
-
-
 def test_ardupilot_reads_the_axes_of_the_vehicle():
-    orientation = np.array([0.0, 0, 0, 1])
-    for step in ([0, 0, 0.7], [0, -0.5, 0], [0.3, 0, 0]):
-        orientation = turn(orientation, np.array(step))
+    orientation = turn_in_all_axes()
     vectors = [
         np.array(each) for each in ([30, 50, 7.0], [3, -1, 0.5], [0.1, -0.2, 0.3], [1, 2, 9.0])
     ]

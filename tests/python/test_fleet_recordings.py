@@ -6,12 +6,10 @@ how far a flight may be from the recording.
 
 from __future__ import annotations
 
-import csv
-
 import numpy as np
 import pytest
-from test_gazebo_recordings import FOLDERS, name_of
-from test_obstacle_recordings import CALM, CASES
+from test_gazebo_recordings import name_of
+from test_obstacle_recordings import CALM, CASES, read_summaries
 from test_random_recordings import parameters
 
 import quadcore as qc
@@ -19,18 +17,7 @@ import quadcore as qc
 pytestmark = pytest.mark.filterwarnings("ignore::quadcore.QuadcoreWarning")
 
 
-def read_cases():
-    for folder in FOLDERS:
-        summary = folder / "obstacles" / "summary.csv"
-        if not summary.exists():
-            continue
-        with summary.open(newline="") as rows:
-            for row in csv.DictReader(rows):
-                if row["class"].startswith("V_"):
-                    yield summary.parent / row["case"], row
-
-
-FLEETS = list(read_cases())
+FLEETS = list(read_summaries(with_fleets=True))
 
 
 def place(simulation, folder):

@@ -20,14 +20,15 @@ pytestmark = pytest.mark.filterwarnings("ignore::quadcore.QuadcoreWarning")
 CALM = 1e-9  # m
 
 
-def read_summaries():
+def read_summaries(with_fleets=False):
+    """Folder and row of each case; those with several vehicles or those with one."""
     for folder in FOLDERS:
         summary = folder / "obstacles" / "summary.csv"
         if not summary.exists():
             continue
         with summary.open(newline="") as rows:
             for row in csv.DictReader(rows):
-                if not row["class"].startswith("V_"):
+                if row["class"].startswith("V_") == with_fleets:
                     yield summary.parent / row["case"], row
 
 

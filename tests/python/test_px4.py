@@ -1,6 +1,7 @@
 """PX4's bridge against a stand-in that speaks the MAVLink of its simulator interface."""
 
 import contextlib
+import functools
 import math
 import socket
 import sys
@@ -8,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from autopilot_files import nothing_remains  # noqa: F401
+from autopilot_files import fly_iris, nothing_remains, turn_in_all_axes  # noqa: F401
 from processes import run_command
 
 import quadcore as qc
@@ -16,7 +17,7 @@ from quadcore.autopilots import Readings, read_autopilot
 from quadcore.autopilots.axes import turn_body_vector, turn_heading, turn_orientation
 from quadcore.autopilots.px4.sensors import SensorPackets, find_pressure
 from quadcore.model.earth import Location
-from quadcore.support.rotation import to_matrix, turn
+from quadcore.support.rotation import to_matrix
 
 mavlink = pytest.importorskip("pymavlink.dialects.v20.common")
 pytest.importorskip("pygeomag")
@@ -36,26 +37,13 @@ def write_stack(folder, *faults, hold=8, more=""):
     return path
 
 
-def fly(stack, duration, reference="hover"):
-    return qc.Simulation("iris", engine="eigen", dt=0.004).run(
-        duration,
-        controller=read_autopilot(stack),
-        reference=qc.references.parse(reference),
-        on_reference=True,
-    )
-
-
-def turned():
-    orientation = np.array([0.0, 0, 0, 1])
-    for step in ([0, 0, 0.7], [0, -0.5, 0], [0.3, 0, 0]):
-        orientation = turn(orientation, np.array(step))
-    return orientation
+fly = functools.partial(fly_iris, dt=0.004)
 
 
 def test_px4_reads_the_sensors_in_its_axes_and_units():
     vectors = ([30, 50, 7.0], [3, -1, 0.5], [0.1, -0.2, 0.3], [1, 2, 9.0])
     position, velocity, rates, force = map(np.array, vectors)
-    readings = Readings(0.0, position, velocity, turned(), rates, force)
+    readings = Readings(0.0, position, velocity, turn_in_all_axes(), rates, force)
     field = np.array([2e-5, 1e-5, -4e-5])
     packets = SensorPackets(mavlink, field, Location(60.0, 10.0, 100.0))
     read = [packets.read_sensor(0, readings, True) for _ in range(400)]
@@ -66,7 +54,7 @@ def test_px4_reads_the_sensors_in_its_axes_and_units():
     assert mean("xgyro ygyro zgyro") == pytest.approx([0.1, 0.2, -0.3], abs=3e-4)
     assert mean("xacc yacc zacc") == pytest.approx([1, -2, -9], abs=5e-3)
     north_east_down = np.array([0.1, 0.2, 0.4])  # Gauss
-    w, x, y, z = turn_orientation(turned())
+    w, x, y, z = turn_orientation(turn_in_all_axes())
     assert mean("xmag ymag zmag") == pytest.approx(
         to_matrix(np.array([x, y, z, w])).T @ north_east_down, abs=2e-4
     )

@@ -75,7 +75,7 @@ def test_every_link_within_the_site_leads_to_its_place(pages):
 
 
 def test_no_page_of_the_site_is_cut_on_a_laptop_and_on_a_telephone(pages, tmp_path):
-    with_player = [SITE / "index.html"]  # which is opened anew at each width
+    with_player = [SITE / "index.html"]  # which is opened again at each width
     others = [page for page in pages if page not in with_player]
     found = what_sticks_out(with_player, WIDTHS, tmp_path)
     found.update(what_sticks_out(others, WIDTHS, tmp_path, once=True))

@@ -60,10 +60,10 @@ class ProgramAutopilot(Autopilot):
                 f"{shortest:g} s before the flight. Give more."
             )
 
-    def _fill_in(self, ports: Mapping[str, int]) -> List[str]:
+    def _fill_in(self, values: Mapping[str, object]) -> List[str]:
         command = self._command
-        for name, port in ports.items():
-            command = [part.replace(f"{{{name}}}", str(port)) for part in command]
+        for name, value in values.items():
+            command = [part.replace(f"{{{name}}}", str(value)) for part in command]
         return command
 
     def _quote_messages(self) -> str:

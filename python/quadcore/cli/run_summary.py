@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from typing import Any, Dict, List, Optional, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -103,20 +103,22 @@ def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
     if "clearance" in result:
         nearest = Encounter(**result["nearest_obstacle"])
         rows.append(("clearance", f"{result['clearance']:.4g} m from {nearest}"))
-        collisions = [Encounter(**collision) for collision in result["collisions"]]
-        first = f", the first with {collisions[0]}" if collisions else ""
-        rows.append(("collisions", f"{len(collisions)}{first}"))
+        rows.append(("collisions", _count_collisions(result["collisions"])))
     if "vehicle_clearance" in result:
         other = Encounter(**result["nearest_vehicle"])
         rows.append(("nearest vehicle", f"{result['vehicle_clearance']:.4g} m from {other}"))
-        meetings = [Encounter(**each) for each in result["vehicle_collisions"]]
-        first = f", the first with {meetings[0]}" if meetings else ""
-        rows.append(("collisions with vehicles", f"{len(meetings)}{first}"))
+        meetings = _count_collisions(result["vehicle_collisions"])
+        rows.append(("collisions with vehicles", meetings))
     if "saturated_steps" in result:
         rows.append(("saturated steps", str(result["saturated_steps"])))
     if "controller" in result:
         rows += _describe_control(result)
     return rows
+
+
+def _count_collisions(collisions: Sequence[Dict[str, Any]]) -> str:
+    first = f", the first with {Encounter(**collisions[0])}" if collisions else ""
+    return f"{len(collisions)}{first}"
 
 
 def _describe_control(result: Dict[str, Any]) -> List[Tuple[str, str]]:

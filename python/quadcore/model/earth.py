@@ -8,6 +8,7 @@ from typing import NamedTuple, Sequence, Tuple
 import numpy as np
 
 from .._core import InputError, World, read_world
+from ..support.optional_packages import require_package
 from .world_text import change_world_text, find_children
 
 _YEAR = 2026.0  # of the World Magnetic Model
@@ -85,13 +86,8 @@ def find_magnetic_field(location: Location) -> np.ndarray:
     InputError
         If pygeomag is not installed.
     """
-    try:
+    with require_package("The magnetic field of the Earth", "pygeomag", "px4"):
         from pygeomag import GeoMag
-    except ImportError:
-        raise InputError(
-            "The magnetic field of the Earth needs the package pygeomag. Install it: "
-            "pip install 'quadcore[px4]'."
-        ) from None
     at = GeoMag().calculate(
         glat=location.latitude, glon=location.longitude, alt=location.altitude / 1000, time=_YEAR
     )

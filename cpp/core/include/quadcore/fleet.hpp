@@ -47,7 +47,7 @@ class Fleet {
  private:
   /// Reset a vehicle, whose engine then moves the free bodies or not.
   static void remake(Simulation& vehicle, bool in_fleet);
-  /// Share the world anew if a vehicle has a new engine, because it picked up or dropped a body.
+  /// Share the world again if a vehicle has a new engine, because it picked up or dropped a body.
   void follow_engines();
   void share();
   /// Act for a vehicle, and record a failure of its flight.

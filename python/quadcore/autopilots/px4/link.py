@@ -21,8 +21,7 @@ from ..waiting import Waiting, describe_durations
 _SIMULATOR, _OFFBOARD, _TELEMETRY, _GROUND = 4560, 14580, 14540, 18570
 _INSTANCES = 10  # PX4 sends the telemetry of further ones to one port
 
-MOTORS = 93
-"""MAVLink number of HIL_ACTUATOR_CONTROLS, which answers HIL_SENSOR."""
+_MOTORS = 93  # MAVLink number of HIL_ACTUATOR_CONTROLS, which answers HIL_SENSOR
 
 _LOOK = 0.25  # s; time between looks at the program
 _STARTING = 0.05  # s; wait for an answer while PX4 starts, in which it gives none
@@ -108,7 +107,7 @@ class Px4Link:
             for frame in self._split():
                 if frame[0] != _MAGIC:
                     raise fail("the autopilot has sent bytes that are not MAVLink 2")
-                if find_number(frame) == MOTORS and find_time(frame) >= asked:
+                if find_number(frame) == _MOTORS and find_time(frame) >= asked:
                     return frame
             if self._poll.poll(1000 * (_LOOK if self.has_answered else _STARTING)):
                 received = self._socket.recv(65536)

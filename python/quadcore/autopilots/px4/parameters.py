@@ -59,8 +59,7 @@ class ParameterWriter:
 
     def __init__(self, mavlink: Any, parameters: Mapping[str, str], where: str) -> None:
         self._mavlink, self._where = mavlink, where
-        self._wanted = {name: self._read(name, text) for name, text in parameters.items()}
-        self._missing = dict(self._wanted)
+        self._missing = {name: self._read(name, text) for name, text in parameters.items()}
         self._types: Dict[str, int] = {}
 
     @property

@@ -16,6 +16,7 @@ import numpy as np
 from ..._core import FlightError, InputError
 from ...control.vehicle import Vehicle
 from ...model.earth import find_location, find_magnetic_field
+from ...support.optional_packages import require_package
 from ..arming import ArmingWatch
 from ..program import Program
 from ..program_autopilot import ProgramAutopilot
@@ -90,7 +91,9 @@ class PX4(ProgramAutopilot):
 
     def start(self, vehicle: Vehicle) -> None:
         """Start the program, and wait until it connects."""
-        self._mavlink = mavlink = _import_mavlink()
+        with require_package("PX4", "pymavlink", "px4"):
+            mavlink: Any = importlib.import_module("pymavlink.dialects.v20.common")
+        self._mavlink = mavlink
         self._mav = mavlink.MAVLink(None, _SYSTEM, mavlink.MAV_COMP_ID_ONBOARD_COMPUTER)
         self._mav.robust_parsing = True
         location = find_location(vehicle.world)
@@ -111,7 +114,9 @@ class PX4(ProgramAutopilot):
         self._program = Program()
         self._exchange = link = Px4Link(self._program)
         self._target = link.instance + 1
-        self._program.start(self._complete_command(link.instance), _ENVIRONMENT)
+        etc = Path(self._command[0]).resolve().parents[1] / "etc"
+        command = self._fill_in({"etc": etc, "instance": link.instance})
+        self._program.start(command, _ENVIRONMENT)
         link.accept(lambda reason: self.fail(-self.hold, reason))
         about = describe_session("px4", Path(self._command[0]), self._settings, parameters)
         self._flight_link = self.record_link(link, about)
@@ -183,25 +188,7 @@ class PX4(ProgramAutopilot):
     def _send(self, link: Link, message: Any, fail: Callable[[str], FlightError]) -> None:
         link.send(message.pack(self._mav), 0, fail)
 
-    def _complete_command(self, instance: int) -> Sequence[str]:
-        etc = Path(self._command[0]).resolve().parents[1] / "etc"
-        given = {"{etc}": str(etc), "{instance}": str(instance)}
-        command = self._command
-        for name, value in given.items():
-            command = [part.replace(name, value) for part in command]
-        return command
-
     def _quote_messages(self) -> str:
         if not self._telemetry.texts:
             return super()._quote_messages()
         return f"Its last messages: {' | '.join(self._telemetry.texts)}"
-
-
-def _import_mavlink() -> Any:
-    """Import the MAVLink 2 dialect of pymavlink."""
-    try:
-        return importlib.import_module("pymavlink.dialects.v20.common")
-    except ImportError:
-        raise InputError(
-            "A PX4 needs the package pymavlink. Install it: pip install 'quadcore[px4]'."
-        ) from None
