@@ -218,6 +218,7 @@ FURTHER = {
     "<capacity>2.2</capacity><resistance>0.03</resistance>"
     "<faults>faults</faults>",
     "controller": "<law>geometric</law>",
+    "downwash": "",
     "fault": "<effectiveness>faults</effectiveness><detection>0.1</detection>",
     "gps": "",
     "ground_effect": "",

@@ -96,7 +96,7 @@ quadcore::PluginDescriptor describe() {
          return std::make_unique<FaultyPlugin>(setup);
        },
 #ifdef OLD_LAWS
-       {true, true, true, true, true, true, "of old"}
+       {true, true, true, true, true, true, true, "of old"}
 #endif
       },
 #endif

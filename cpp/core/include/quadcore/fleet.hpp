@@ -54,6 +54,8 @@ class Fleet {
   template <class Act>
   void blame(std::size_t vehicle, const Act& act);
   void throw_failure() const;
+  /// Show all vehicles to the plugins that observe others.
+  void look_around();
 
   std::vector<Simulation*> vehicles_;
   std::vector<std::string> names_;
@@ -61,6 +63,8 @@ class Fleet {
   std::unique_ptr<SharedWorld> shared_;
   std::vector<double> initial_;  ///< initial state of shared_
   std::vector<SharedWorld::TimedForces> forces_;
+  std::vector<OtherVehicle> seen_;     ///< what others see of each vehicle; empty if none looks
+  std::vector<OtherVehicles> others_;  ///< pointers into seen_ for each vehicle
   std::string failure_;
 };
 

@@ -16,6 +16,7 @@
 #include "quadcore/plugin/loads.hpp"
 #include "quadcore/plugin/messages.hpp"
 #include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/other_vehicle.hpp"
 #include "quadcore/plugin/random.hpp"
 #include "quadcore/plugin/rotor_layout.hpp"
 #include "quadcore/plugin/rotor_rows.hpp"

@@ -165,8 +165,9 @@ class Simulation : private ForceField {
   void warn(const std::string& warning);  ///< ignores ""
   std::string describe_idle(const Model& model) const;
   void load_plugins(const Model& model, const SimulationOptions& options);
-  void check_drivers();  ///< throws if two plugins drive the same joint
-  void note_hooks();     ///< collects the plugins with each hook in calling order
+  /// Note the radii of the rotors. Throws if two plugins drive the same joint.
+  void check_drivers();
+  void note_hooks();  ///< collects the plugins with each hook in calling order
   void gather_laws();
   void prepare_plugins();  ///< calls the plugins' prepare()
   Wrench probe(const VehicleState& state);
@@ -182,6 +183,10 @@ class Simulation : private ForceField {
   std::string blamed() const;
   std::unique_ptr<Engine> create_engine(const Model& model) const;
   void check_usable() const;  ///< throws FlightError if the flight has failed
+  bool observes() const { return !with_.observe.empty(); }
+  /// Write what plugins of other vehicles may see.
+  void show_to_others(OtherVehicle& seen);
+  void observe(const OtherVehicles& others);
   void begin_step();
   void end_step();
   void begin();  ///< runs the sensors at the start of the motion
@@ -210,9 +215,9 @@ class Simulation : private ForceField {
     topics_.write_as(the_caller);
   }
   void publish(const char* call, std::size_t topic, const double* values);
-  /// Call a hook of the given plugins.
-  template <auto hook>
-  void sample(const std::vector<const LoadedPlugin*>& plugins, bool jumped);
+  /// Call a hook of the given plugins by call(plugin, sample, state).
+  template <class Call>
+  void sample(const std::vector<const LoadedPlugin*>& plugins, bool jumped, const Call& call);
   void update();
   void sense(bool jumped);
   /// Add the active plugin's new warnings to warnings().
@@ -233,13 +238,15 @@ class Simulation : private ForceField {
   std::vector<std::string> ignored_;
   Topics topics_;
   std::vector<LoadedPlugin> plugins_;
-  /// Plugins with each hook in calling order: update and sense in the order of topics, others by
-  /// name.
+  /// Plugins with each hook in calling order: observe, update and sense in the order of topics,
+  /// others by name.
   struct {
-    std::vector<const LoadedPlugin*> update, sense, forces, forces_without_laws, air, carried;
+    std::vector<const LoadedPlugin*> observe, update, sense, forces, forces_without_laws, air,
+        carried;
   } with_;
   ForceLaws laws_;
-  bool windy_ = false;  ///< whether the air may move
+  std::vector<double> radii_;  ///< RotorDescription::radius of each rotor [m]
+  bool windy_ = false;         ///< whether the air may move
   std::vector<std::string> wrench_terms_;
   std::unique_ptr<Engine> engine_;
   std::vector<CarriedBody> carried_;  ///< bodies attached in the engine's model

@@ -1,5 +1,7 @@
 #include "quadcore/fleet.hpp"
 
+#include <algorithm>
+
 #include "laden_model.hpp"
 #include "quadcore/fingerprint.hpp"
 #include "quadcore/plugin/error.hpp"
@@ -46,6 +48,26 @@ Fleet::Fleet(std::vector<Simulation*> vehicles, std::vector<std::string> names)
     throw;
   }
   initial_ = shared_->save();
+  const auto observes = [](const Simulation* vehicle) { return vehicle->observes(); };
+  if (std::none_of(vehicles_.begin(), vehicles_.end(), observes)) return;
+  seen_.resize(vehicles_.size());
+  others_.resize(vehicles_.size());
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    seen_[i].name = names_[i];
+    for (std::size_t k = 0; k < vehicles_.size(); ++k) {
+      if (k != i) others_[i].push_back(&seen_[k]);
+    }
+  }
+}
+
+void Fleet::look_around() {
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    blame(i, [&] { vehicles_[i]->show_to_others(seen_[i]); });
+  }
+  throw_failure();
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    blame(i, [&] { vehicles_[i]->observe(others_[i]); });
+  }
 }
 
 void Fleet::remake(Simulation& vehicle, bool in_fleet) {
@@ -80,6 +102,7 @@ void Fleet::step() {
     throw FlightError(vehicles_.front()->time(), failure_ + (failure_.back() == '.' ? "" : ".") +
                                                      " To continue, call reset or restore.");
   }
+  look_around();
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     blame(i, [&] { vehicles_[i]->begin_step(); });
     forces_[i] = {vehicles_[i]->time(), vehicles_[i]};

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "quadcore/harmless_elements.hpp"
 #include "quadcore/plugin/error.hpp"
@@ -215,6 +217,7 @@ bool Simulation::has_velocity_in_body() const {
 void Simulation::check_drivers() {
   const std::size_t joints = model_.joints.size();
   std::vector<const LoadedPlugin*> drivers(joints, nullptr);
+  radii_.assign(joints, std::numeric_limits<double>::quiet_NaN());
   for (const LoadedPlugin& p : plugins_) {
     std::vector<RotorDescription> rotors(joints);
     active_ = &p;
@@ -222,6 +225,7 @@ void Simulation::check_drivers() {
     active_ = nullptr;
     for (std::size_t i = 0; i < joints; ++i) {
       const RotorDescription& rotor = rotors[i];
+      if (!std::isnan(rotor.radius)) radii_[i] = rotor.radius;
       if (!rotor.prescribed && !rotor.otherwise && rotor.place == not_driven) continue;
       if (const LoadedPlugin* const first = drivers[i]) {
         throw InputError(p.who + " drives joint '" + model_.joints[i].name + "', which '" +

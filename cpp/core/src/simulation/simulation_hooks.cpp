@@ -13,6 +13,7 @@ void Simulation::note_hooks() {
   for (const std::size_t i : topics_.settle()) {
     const LoadedPlugin& p = plugins_[i];
     const Hooks& hooks = p.descriptor->create.hooks;
+    if (hooks.observe) with_.observe.push_back(&p);
     if (hooks.update) with_.update.push_back(&p);
     if (hooks.sense) with_.sense.push_back(&p);
   }
@@ -137,22 +138,56 @@ const std::vector<Wrench>& Simulation::wrenches() {
   return wrenches_;
 }
 
-template <auto hook>
-void Simulation::sample(const std::vector<const LoadedPlugin*>& plugins, bool jumped) {
+template <class Call>
+void Simulation::sample(const std::vector<const LoadedPlugin*>& plugins, bool jumped,
+                        const Call& call) {
   Sample sample{time(), dt_, engine_->kinematics(), world_, topics_, said_, 0, jumped};
   topics_.begin_sample();
   for (const LoadedPlugin* const p : plugins) {
     enter(*p);
     sample.seed = p->seed;
-    ((*p->plugin).*hook)(sample, state_of(*p));
+    call(*p->plugin, sample, state_of(*p));
     if (!said_.empty()) collect_warnings();
   }
   leave();
 }
 
-void Simulation::sense(bool jumped) { sample<&Plugin::sense>(with_.sense, jumped); }
+void Simulation::sense(bool jumped) {
+  sample(with_.sense, jumped, [](const Plugin& plugin, const Sample& sample, PluginState state) {
+    plugin.sense(sample, state);
+  });
+}
 
-void Simulation::update() { sample<&Plugin::update>(with_.update, false); }
+void Simulation::update() {
+  sample(with_.update, false, [](const Plugin& plugin, const Sample& sample, PluginState state) {
+    plugin.update(sample, state);
+  });
+}
+
+void Simulation::observe(const OtherVehicles& others) {
+  sample(with_.observe, false,
+         [&others](const Plugin& plugin, const Sample& sample, PluginState state) {
+           plugin.observe(sample, others, state);
+         });
+}
+
+void Simulation::show_to_others(OtherVehicle& seen) {
+  Kinematics& k = engine_->kinematics();
+  wrench_loads_.clear();
+  wrench_loads_.record_terms(nullptr, 0, nullptr);
+  evaluate(k, wrench_loads_);
+  if (!wrench_loads_.all_finite()) refuse(k, wrench_loads_);
+  seen.p_WF = k.p_WF;
+  seen.R_WF = k.R_WF;
+  seen.v_WF_W = k.R_WF * k.v_WF_F;
+  seen.w_WF_W = k.R_WF * k.w_WF_F;
+  seen.rotors.resize(k.rotors.size());
+  for (std::size_t i = 0; i < k.rotors.size(); ++i) {
+    const Vector3d p_FRcm_F = k.rotors.vector(MotionRow::p_FRcm, i);
+    seen.rotors[i] = {k.p_WF + k.R_WF * p_FRcm_F, k.R_WF * wrench_loads_.rotor_force_F(i),
+                      radii_[i]};
+  }
+}
 
 void Simulation::collect_warnings() {
   for (const std::string& what : said_) {

@@ -12,6 +12,7 @@
 #include "quadcore/plugin/kinematics.hpp"
 #include "quadcore/plugin/loads.hpp"
 #include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/other_vehicle.hpp"
 #include "quadcore/plugin/tags.hpp"
 #include "quadcore/plugin/topics.hpp"
 #include "quadcore/plugin/vehicle_description.hpp"
@@ -52,11 +53,15 @@ class Plugin {
 
   /// Return the number of state values that this plugin needs.
   virtual std::size_t state_size() const { return 0; }
-  /// Describe how the rotors that this plugin drives follow a command, and the slowdown factor of
-  /// rotors on which it exerts forces.
+  /// Describe how the rotors that this plugin drives follow a command, and slowdown factor and
+  /// radius of rotors on which it exerts forces.
   virtual void describe_rotors(std::vector<RotorDescription>&) const {}
   /// Called once when all plugins have been created. A plugin must not change afterwards.
   virtual void prepare(const VehicleDescription&) {}
+  /// Called at the start of each step of a fleet, before update(): the other vehicles as they are
+  /// at this time, so that the order of the vehicles has no effect. Never called for a vehicle that
+  /// is alone in its world.
+  virtual void observe(const Sample&, const OtherVehicles&, PluginState) const {}
   /// Called at the start of each step: commands and sampled controllers.
   virtual void update(const Sample&, PluginState) const {}
   /// Called at time 0, after a state was set, and at the end of each step: sensors.
@@ -81,7 +86,8 @@ class Plugin {
 /// hooks except laws(), which would replace forces(), count as overridden.
 struct Hooks {
   /// \cond
-  bool prepare = true, update = true, sense = true, forces = true, air = true, carried = true;
+  bool prepare = true, observe = true, update = true, sense = true, forces = true, air = true,
+       carried = true;
   /// \endcond
   const char* laws = nullptr;  ///< law_interface of a class with laws()
 
@@ -89,6 +95,7 @@ struct Hooks {
   template <class P>
   static constexpr Hooks of() {
     return {!std::is_same_v<decltype(&P::prepare), decltype(&Plugin::prepare)>,
+            !std::is_same_v<decltype(&P::observe), decltype(&Plugin::observe)>,
             !std::is_same_v<decltype(&P::update), decltype(&Plugin::update)>,
             !std::is_same_v<decltype(&P::sense), decltype(&Plugin::sense)>,
             !std::is_same_v<decltype(&P::forces), decltype(&Plugin::forces)>,

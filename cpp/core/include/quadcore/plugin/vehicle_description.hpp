@@ -25,6 +25,8 @@ struct RotorDescription {
   /// Speed of the rotor in its force laws divided by the joint's; 0 if no plugin sets it, in which
   /// case the description of a vehicle contains 1/|rate_per_command|.
   double slowdown = 0;
+  /// Radius of the rotor's disc [m]; NaN if no plugin sets it.
+  double radius = std::numeric_limits<double>::quiet_NaN();
   /// \name Set by the plugin that drives the rotor, see Plugin::describe_rotors()
   /// @{
   double rate_per_command = 1;  ///< steady-state joint rate per commanded speed
