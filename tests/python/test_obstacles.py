@@ -66,15 +66,16 @@ def test_obstacles_of_a_world_are_listed_with_their_poses(tmp_path):
     )
 
 
-def test_eigen_refuses_an_obstacle_that_it_would_fly_through(tmp_path):
-    world = write_world(tmp_path, solid(BOX, "9 9 9 0 0 0", "crate"))
+def test_eigen_refuses_a_mesh_that_it_would_fly_through(tmp_path):
+    prism = "<polyline><point>0 0</point><point>1 0</point><point>0 1</point></polyline>"
+    world = write_world(tmp_path, solid(prism, "9 9 9 0 0 0", "crate"))
     with pytest.raises(
         qc.InputError, match=r"case\.world:1: the engine eigen does not model .*'crate'.* Use the"
     ):
         qc.Simulation("quadrotor", engine="eigen", world=world)
 
 
-@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+@pytest.mark.parametrize("engine", ["gazebo11", "ode", "eigen"])
 def test_a_vehicle_lands_on_a_box_as_on_ground_of_the_same_height(engine, tmp_path):
     roof = "<box><size>4 4 1</size></box>"
     resting = [
@@ -88,7 +89,7 @@ def test_a_vehicle_lands_on_a_box_as_on_ground_of_the_same_height(engine, tmp_pa
     assert resting[0] == pytest.approx(resting[1], abs=1e-3)
 
 
-@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+@pytest.mark.parametrize("engine", ["gazebo11", "ode", "eigen"])
 def test_obstacles_far_away_change_no_byte(engine, tmp_path):
     (empty, far) = (tmp_path / "empty", tmp_path / "far")
     empty.mkdir()

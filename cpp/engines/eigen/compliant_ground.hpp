@@ -2,24 +2,22 @@
 
 #include <cmath>
 #include <cstddef>
-#include <string>
 #include <vector>
 
+#include "bristle.hpp"
 #include "contact_stiffness.hpp"
 #include "gyrostat.hpp"
 #include "laws/ahead.hpp"
-#include "laws/contact.hpp"
+#include "link_motion.hpp"
 #include "quadcore/plugin/kinematics.hpp"
 #include "quadcore/plugin/loads.hpp"
 #include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 
-/// The ground plane z = 0 under a gyrostat. Each contact point has a force by laws/contact.hpp.
-/// Each shape has one bristle, a spring between the ground and the centre of pressure. It bends as
-/// the shape moves along the ground, turns and rolls, and slips at the friction limit (P. R. Dahl,
-/// "Solid friction damping of mechanical vibrations", AIAA Journal 14, 1976). The stiffness is as
-/// high as the time step allows, see contact_stiffness.hpp.
+/// The ground plane z = 0 under a gyrostat. Each contact point has a force by laws/contact.hpp, and
+/// each shape a bristle for friction. The stiffness is as high as the time step allows, see
+/// contact_stiffness.hpp.
 class CompliantGround {
  public:
   /// Throws InputError for a shape without contact model (a mesh). The model must outlive this
@@ -45,20 +43,11 @@ class CompliantGround {
 
   /// Return the bristles, the only memory of the contact.
   void clear();
-  std::size_t saved_size() const { return Bent::SizeAtCompileTime * shapes_.size(); }
+  std::size_t saved_size() const { return Bristle::saved_size * shapes_.size(); }
   double* save(double* to) const;
   const double* restore(const double* from);
 
-  /// Return warnings about tags of Gazebo's solver that have no effect here.
-  std::vector<std::string> warnings() const;
-
  private:
-  /// Components of laws::Resistance, in world axes.
-  using Bent = laws::Resistance;
-  struct Spring {
-    double stiffness = 0;   ///< N/m
-    double relaxation = 0;  ///< s
-  };
   struct Shape {
     std::size_t link;
     const Collision* collision;
@@ -66,25 +55,14 @@ class CompliantGround {
     double reach;  ///< distance of its farthest point from its centre [m]
     bool turns;    ///< belongs to a rotor and is not a body of revolution about its axis
     StableContact stable;
-    double hardest;                    ///< maximum stiffness, that of its surface [N/m]
-    double mu1, mu2;                   ///< friction along fdir1 and across it
-    Spring press, rub;                 ///< springs of this step
-    Bent bristle = Bent::Zero();       ///< [m]
-    Bent bent = Bent::Zero();          ///< bristle at this stage [m]
-    Bent sum = Bent::Zero();           ///< weighted sum of its Runge-Kutta rates
-    double force = 0;                  ///< normal force [N]
-    Vector3d friction = {0, 0, 0};     ///< friction limits along its axes and about the normal [N]
-    Eigen::Vector2d axis_W = {0, -1};  ///< direction of mu1, unit
+    double hardest;   ///< maximum stiffness, that of its surface [N/m]
+    double mu1, mu2;  ///< friction along fdir1 and across it
+    Spring press;     ///< spring of each point in this step
+    Bristle bristle;
   };
-  struct Motion;
 
-  static double lowest(const Shape& shape, const Motion& motion);
-  static Spring spring(double stable, double hardest, double dt);
-  Motion motion_of(const Kinematics& kinematics, std::size_t link) const;
-  Motion motion_of(const Kinematics& kinematics, const Shape& shape) const;
+  static double lowest(const Shape& shape, const LinkMotion& motion);
   void press(Shape& shape, const Kinematics& kinematics, Loads& loads);
-  Bent rub(Shape& shape, const Bent& rate);
-  static Bent possible(const Shape& shape, const Bent& wanted_W);
 
   const Model& model_;
   double weight_;  ///< weight of the vehicle under Gazebo's gravity [N]

@@ -28,25 +28,26 @@ Matrix6d spring_on_ball(const Vector3d& p_CB, double radius) {
 struct Shape {
   std::size_t link;
   const Collision* collision;
-  int points = 0;
+  std::size_t points = 0;
   Matrix6d springs = Matrix6d::Zero();  ///< sum over all points
   double stiffness = 0;                 ///< relative to that of the other shapes
 };
 
 Shape measured(const Model& model, std::size_t link, const Collision& collision,
-               const Eigen::Isometry3d& X_FL, const Vector3d& p_FC) {
+               const Eigen::Isometry3d& X_FL, const Vector3d& p_FC, PlacePoints place_points) {
   Shape shape{link, &collision};
   const Vector3d p_CS = X_FL * collision.pose.xyz - p_FC;
   const Matrix3d R_FS = X_FL.linear() * collision.pose.rotation().toRotationMatrix();
-  Vector3d points[most_touching_points];
-  shape.points = touching_points(collision, p_CS, R_FS, points);
+  const std::vector<Vector3d> points = place_points(collision, p_CS, R_FS);
+  shape.points = points.size();
   if (collision.kind == ShapeKind::sphere) {
     shape.springs = spring_on_ball(p_CS, collision.size.x());
   } else if (link > 0 && !revolves(model, link, collision)) {
     const double swept = collision.pose.xyz.norm() + outer_radius(collision.kind, collision.size);
-    shape.springs = shape.points * spring_on_ball(X_FL.translation() - p_FC, swept);
+    shape.springs =
+        static_cast<double>(shape.points) * spring_on_ball(X_FL.translation() - p_FC, swept);
   } else {
-    for (int i = 0; i < shape.points; ++i) shape.springs += spring_at(points[i]);
+    for (const Vector3d& point : points) shape.springs += spring_at(point);
   }
   return shape;
 }
@@ -69,7 +70,15 @@ bool revolves(const Model& model, std::size_t link, const Collision& shape) {
   return shape.kind == ShapeKind::cylinder && axis.cross(z).norm() < tolerance;
 }
 
-std::vector<StableContact> stable_contacts(const Model& model, const Gyrostat& body) {
+std::vector<Vector3d> place_touching_points(const Collision& shape, const Vector3d& p,
+                                            const Matrix3d& R) {
+  Vector3d points[most_touching_points];
+  const int count = touching_points(shape, p, R, points);
+  return {points, points + count};
+}
+
+std::vector<StableContact> stable_contacts(const Model& model, const Gyrostat& body,
+                                           PlacePoints place_points) {
   Matrix6d inertia = Matrix6d::Zero();
   inertia.topLeftCorner<3, 3>() = Matrix3d::Identity() / body.inverse_mass;
   inertia.bottomRightCorner<3, 3>() = body.inverse_reduced_I_F.inverse();
@@ -84,7 +93,7 @@ std::vector<StableContact> stable_contacts(const Model& model, const Gyrostat& b
   Matrix6d all = Matrix6d::Zero();
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     for (const Collision& collision : model.links[i].collisions) {
-      Shape shape = measured(model, i, collision, poses[i], body.p_FCcm_F);
+      Shape shape = measured(model, i, collision, poses[i], body.p_FCcm_F, place_points);
       shape.stiffness = 1 / largest_square(shape.springs);
       all += shape.stiffness * shape.springs;
       shapes.push_back(shape);
@@ -103,7 +112,8 @@ std::vector<StableContact> stable_contacts(const Model& model, const Gyrostat& b
                              (sharing * arm * arm);
       contact.rubbing = std::min(contact.rubbing, turning) / 2;
       if (!revolves(model, shape.link, *shape.collision)) {
-        contact.pressing = std::min(contact.pressing, turning / shape.points) / 2;
+        contact.pressing =
+            std::min(contact.pressing, turning / static_cast<double>(shape.points)) / 2;
         contact.rubbing = std::min(contact.rubbing, contact.pressing);
       }
     }

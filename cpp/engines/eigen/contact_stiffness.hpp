@@ -23,8 +23,16 @@ struct StableContact {
 /// Return whether a shape is a body of revolution about the joint of its link.
 bool revolves(const Model& model, std::size_t link, const Collision& shape);
 
+/// Return the contact points of a shape with a pose; see touching_points().
+using PlacePoints = std::vector<Vector3d> (*)(const Collision& shape, const Vector3d& p,
+                                              const Matrix3d& R);
+/// Those on the ground.
+std::vector<Vector3d> place_touching_points(const Collision& shape, const Vector3d& p,
+                                            const Matrix3d& R);
+
 /// Return for each shape, link by link, the stiffest springs that comply with
 /// largest_square_per_step even under all points at once in any attitude.
-std::vector<StableContact> stable_contacts(const Model& model, const Gyrostat& body);
+std::vector<StableContact> stable_contacts(const Model& model, const Gyrostat& body,
+                                           PlacePoints place_points = place_touching_points);
 
 }  // namespace quadcore

@@ -29,18 +29,36 @@ void refuse_tags(const Model& model) {
   }
 }
 
-/// Reject obstacles and free bodies, of which this engine models only the ground plane.
-void refuse_obstacles(const World& world) {
-  const auto refuse = [](const auto& first, const char* kind) {
-    throw InputError(first.where + ": the engine eigen does not model the " + kind + " '" +
-                     first.model + "'. Use the engine ode or gazebo11.");
-  };
-  if (!world.obstacles.empty()) refuse(world.obstacles.front(), "obstacle");
-  if (!world.free_bodies.empty()) refuse(world.free_bodies.front(), "free body");
+void refuse_free_bodies(const World& world) {
+  if (world.free_bodies.empty()) return;
+  const FreeBody& first = world.free_bodies.front();
+  throw InputError(first.where + ": the engine eigen does not model the free body '" + first.model +
+                   "'. Use the engine ode or gazebo11.");
 }
 
-/// Number of substeps at the ground, where impacts are faster than all other motion.
-constexpr int parts_at_ground = 4;
+/// Return warnings about tags of Gazebo's solver that have no effect in contact here.
+std::vector<std::string> list_unused_tags(const Model& model) {
+  std::vector<std::string> all;
+  const Surface usual;
+  for (const Link& link : model.links) {
+    for (const Collision& collision : link.collisions) {
+      const Surface& surface = collision.surface;
+      if (surface.kd == usual.kd && surface.min_depth == usual.min_depth &&
+          surface.max_vel == usual.max_vel && surface.max_contacts == usual.max_contacts) {
+        continue;
+      }
+      all.push_back(
+          collision.where +
+          ": the engine eigen ignores <kd>, <minDepth>, <maxVel> and <maxContacts> of this "
+          "shape. Use the engine ode or gazebo11 to include them.");
+    }
+  }
+  return all;
+}
+
+/// Numbers of substeps in contact, where impacts are faster than all other motion. Obstacles may be
+/// thin, and the vehicle must not pass through them.
+constexpr int parts_at_ground = 4, parts_at_obstacle = 16;
 
 }  // namespace
 
@@ -59,7 +77,8 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       given_rates_(model.joints.size()),
       reacting_(model.joints.size()) {
   refuse_tags(model_);
-  refuse_obstacles(world);
+  refuse_free_bodies(world);
+  if (!world.obstacles.empty()) obstacles_.emplace(model_, body_, world.obstacles);
   if (world.ground_plane) ground_.emplace(model_, body_, world.ground);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
   RotorMotions& rotors = kinematics_.rotors;
@@ -143,8 +162,9 @@ void EigenEngine::step(double time, double dt, const ForceField& forces) {
   if (!force_laws.complete) {
     step_.evaluate_rest = [](void* engine) { static_cast<EigenEngine*>(engine)->evaluate_rest(); };
   }
-  if (ground_ && is_at_ground(dt)) {
-    step_at_ground(time, dt);
+  touches_obstacles_ = obstacles_ && is_at_obstacle(dt);
+  if (touches_obstacles_ || (ground_ && is_at_ground(dt))) {
+    step_in_contact(time, dt, touches_obstacles_ ? parts_at_obstacle : parts_at_ground);
   } else {
     advance_(step_, time, dt);
   }
@@ -158,9 +178,17 @@ bool EigenEngine::is_at_ground(double dt) const {
          ground_->is_ahead(kinematics_, dt);
 }
 
-void EigenEngine::step_at_ground(double time, double dt) {
-  const double part = dt / parts_at_ground;
-  if (placed_) ground_->refuse_deep(kinematics_, part);
+bool EigenEngine::is_at_obstacle(double dt) {
+  const Eigen::Map<const Vector3d> p_WC(state_.data() + GyrostatState::position);
+  const Eigen::Map<const Vector3d> v_WC(state_.data() + GyrostatState::velocity);
+  const double turning = kinematics_.w_WF_F.norm() * obstacles_->reach();
+  return obstacles_->is_near(p_WC, v_WC.norm() + turning, dt);
+}
+
+void EigenEngine::step_in_contact(double time, double dt, int parts) {
+  const double part = dt / parts;
+  if (placed_ && ground_) ground_->refuse_deep(kinematics_, part);
+  if (placed_ && touches_obstacles_) obstacles_->refuse_deep(kinematics_, part);
   placed_ = false;
   step_.evaluate_rest = [](void* engine) {
     EigenEngine& self = *static_cast<EigenEngine*>(engine);
@@ -169,12 +197,15 @@ void EigenEngine::step_at_ground(double time, double dt) {
     } else {
       self.evaluate_rest();
     }
-    self.ground_->add_forces(self.kinematics_, self.loads_);
+    if (self.ground_) self.ground_->add_forces(self.kinematics_, self.loads_);
+    if (self.touches_obstacles_) self.obstacles_->add_forces(self.kinematics_, self.loads_);
   };
-  for (int i = 0; i < parts_at_ground; ++i) {
-    ground_->begin(part);
+  for (int i = 0; i < parts; ++i) {
+    if (ground_) ground_->begin(part);
+    if (touches_obstacles_) obstacles_->begin(part);
     advance_(step_, time + i * part, part);
-    ground_->end();
+    if (ground_) ground_->end();
+    if (touches_obstacles_) obstacles_->end();
   }
 }
 
@@ -256,6 +287,7 @@ void EigenEngine::set_state(const VehicleState& state) {
         std::remainder(state.rotor_angle[row], 2 * M_PI);
   }
   if (ground_) ground_->clear();
+  if (obstacles_) obstacles_->clear();
   placed_ = true;
   show();
 }
@@ -266,34 +298,53 @@ std::string EigenEngine::method() const {
     method += "; approximate ground contact by springs, dampers and bristles in " +
               std::to_string(parts_at_ground) + " substeps";
   }
+  if (obstacles_) {
+    method += "; approximate contact with obstacles likewise in " +
+              std::to_string(parts_at_obstacle) + " substeps";
+  }
   return method;
 }
 
 std::vector<std::string> EigenEngine::warnings() const {
   std::vector<std::string> warnings = warnings_;
-  if (!ground_) return warnings;
-  const std::vector<std::string> of_ground = ground_->warnings();
-  warnings.insert(warnings.end(), of_ground.begin(), of_ground.end());
+  if (!ground_ && !obstacles_) return warnings;
+  const std::vector<std::string> of_contact = list_unused_tags(model_);
+  warnings.insert(warnings.end(), of_contact.begin(), of_contact.end());
   return warnings;
+}
+
+/// Return the size of save(); only contact has a memory beyond the state.
+std::size_t EigenEngine::saved_size() const {
+  if (!ground_ && !obstacles_) return state_.size();
+  return state_.size() + (ground_ ? ground_->saved_size() : 0) +
+         (obstacles_ ? obstacles_->saved_size() : 0) + 1;
 }
 
 std::vector<double> EigenEngine::save() const {
   std::vector<double> saved(state_.begin(), state_.end());
-  if (!ground_) return saved;
-  saved.resize(state_.size() + ground_->saved_size() + 1);
-  *ground_->save(saved.data() + state_.size()) = placed_;
+  if (!ground_ && !obstacles_) return saved;
+  saved.resize(saved_size());
+  double* to = saved.data() + state_.size();
+  if (ground_) to = ground_->save(to);
+  if (obstacles_) to = obstacles_->save(to);
+  *to = placed_;
   return saved;
 }
 
 void EigenEngine::restore(const std::vector<double>& saved) {
-  if (saved.size() != state_.size() + (ground_ ? ground_->saved_size() + 1 : 0)) {
+  if (saved.size() != saved_size()) {
     throw InputError(
         "snapshot: it was taken with another model or engine. Restore a snapshot of this "
         "simulation.");
   }
   const auto from = saved.begin() + static_cast<std::ptrdiff_t>(state_.size());
   std::copy(saved.begin(), from, state_.begin());
-  if (ground_) placed_ = *ground_->restore(&*from) != 0;
+  if (ground_ || obstacles_) {
+    const double* rest = &*from;
+    if (ground_) rest = ground_->restore(rest);
+    if (obstacles_) rest = obstacles_->restore(rest);
+    placed_ = *rest != 0;
+  }
   show();
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "compliant_ground.hpp"
+#include "compliant_obstacles.hpp"
 #include "gyrostat.hpp"
 #include "gyrostat_step.hpp"
 #include "quadcore/engine.hpp"
@@ -10,8 +11,8 @@
 namespace quadcore {
 
 /// The most accurate engine: the vehicle is a gyrostat in reduced coordinates, integrated by the
-/// classical fourth-order Runge-Kutta method with force laws evaluated at every stage. Its ground
-/// contact is approximate.
+/// classical fourth-order Runge-Kutta method with force laws evaluated at every stage. Its contact
+/// is approximate.
 class EigenEngine final : public Engine {
  public:
   EigenEngine(const Model& model, const World& world);
@@ -35,14 +36,19 @@ class EigenEngine final : public Engine {
   void take_given_rates();
   void end_given_rates();
   bool is_at_ground(double dt) const;
-  void step_at_ground(double time, double dt);
+  bool is_at_obstacle(double dt);
+  /// Step in as many parts, with the contact of the ground, and of obstacles if they are near.
+  void step_in_contact(double time, double dt, int parts);
+  std::size_t saved_size() const;
 
   std::vector<std::string> warnings_;  ///< on the interpretation of the model
   Model model_;
   Gyrostat body_;
   Vector3d gravity_W_;
-  std::optional<CompliantGround> ground_;  ///< empty in a world without ground
-  bool placed_ = true;  ///< whether the state was set and has not moved on the ground
+  std::optional<CompliantGround> ground_;        ///< empty in a world without ground
+  std::optional<CompliantObstacles> obstacles_;  ///< empty in a world without obstacles
+  bool touches_obstacles_ = false;               ///< whether obstacles are near in this step
+  bool placed_ = true;  ///< whether the state was set and has not moved in contact
   Kinematics kinematics_;
   Loads loads_;
   LaneNumbers state_, stage_, sum_;
