@@ -6,7 +6,15 @@ import unittest
 import harness
 from geometry_msgs.msg import TwistWithCovarianceStamped
 from harness import Recording, description, flight, step
-from sensor_msgs.msg import BatteryState, FluidPressure, Imu, MagneticField, NavSatFix
+from sensor_msgs.msg import (
+    BatteryState,
+    FluidPressure,
+    Imu,
+    LaserScan,
+    MagneticField,
+    NavSatFix,
+    Range,
+)
 
 MAST = (
     '<link name="mast"><inertial><mass value="0.01"/><inertia ixx="1e-6" iyy="1e-6" izz="1e-6" '
@@ -27,6 +35,8 @@ SENSORS = (
     + plugin("gps", **MOUNTED, latitude=45, horizontalNoise=2, verticalDrift=3, velocityNoise=0.5)
     + plugin("barometer", **MOUNTED, delay=0.02)
     + plugin("magnetometer", **MOUNTED, noise=1e-7)
+    + plugin("range", **MOUNTED, minRange=0.2, maxRange=8)
+    + plugin("lidar", **MOUNTED, samples=5, minAngle=-1, maxAngle=1, maxRange=20)
     + plugin(
         "battery",
         **{"fullVoltage": 12, "emptyVoltage": 10, "capacity": 2, "resistance": 0, "charge": 0.5},
@@ -39,6 +49,8 @@ HEARD = {
     "fix/velocity": (TwistWithCovarianceStamped, 0.05),
     "pressure": (FluidPressure, 0.03),
     "magnetic_field": (MagneticField, 0.05),
+    "range": (Range, 0.05),
+    "scan": (LaserScan, 0.05),
     "battery": (BatteryState, 0.049),
 }
 
@@ -87,6 +99,13 @@ class TestSensors(unittest.TestCase):
         self.assertAlmostEqual(field.z, -42.3884e-6, delta=1e-6)
         for variance in diagonal(heard["magnetic_field"].magnetic_field_covariance):
             self.assertAlmostEqual(variance, 1e-14, delta=1e-20)
+        beam, scan = heard["range"], heard["scan"]
+        self.assertEqual(beam.range, float("inf"))  # it looks ahead, over flat ground
+        self.assertAlmostEqual(beam.min_range, 0.2)
+        self.assertEqual(beam.max_range, 8)
+        self.assertEqual(len(scan.ranges), 5)
+        self.assertEqual((scan.angle_min, scan.angle_max, scan.range_max), (-1, 1, 20))
+        self.assertAlmostEqual(scan.angle_increment, 0.5)
         battery = heard["battery"]
         self.assertAlmostEqual(battery.voltage, 11, places=4)
         self.assertAlmostEqual(battery.percentage, 0.5, places=4)

@@ -78,6 +78,29 @@ class FixOutlet final : public Outlet {
   TypedOutlet<messages::Fix, geometry_msgs::TwistWithCovarianceStamped> velocity_;
 };
 
+bool is_scan(const MessageKind& kind) {
+  const std::size_t fields = kind.fields.size();
+  return fields > messages::scan_numbers && kind == messages::scan(fields - messages::scan_numbers);
+}
+
+/// Publishes a scan, of which the number of beams may differ from one topic to the next.
+class ScanOutlet final : public Outlet {
+ public:
+  ScanOutlet(ros::NodeHandle& nh, const std::string& name, const MessageFrames& frames)
+      : publisher_(nh, name, queue_size) {
+    set_frames(message_, frames);
+  }
+  void send(const Topic& topic, const ros::Time&) override {
+    message_.header.stamp = node::to_ros(topic.stamp);
+    to_ros(topic.values, message_);
+    publisher_.publish(message_);
+  }
+
+ private:
+  LatchedPublisher<sensor_msgs::LaserScan> publisher_;
+  sensor_msgs::LaserScan message_;
+};
+
 /// Publishes a kind without its own ROS type: the numbers, with their names as the label.
 class ArrayOutlet final : public Outlet {
  public:
@@ -140,6 +163,7 @@ const Transport* find_transport(const MessageKind& kind) {
       transport<messages::Field, sensor_msgs::MagneticField>(),
       transport<messages::Battery, sensor_msgs::BatteryState>(),
       outgoing<messages::Fix, FixOutlet>(),
+      outgoing<messages::Range, TypedOutlet<messages::Range, sensor_msgs::Range>>(),
       transport<messages::Wrench, geometry_msgs::WrenchStamped>(),
       transport<messages::Vector, geometry_msgs::Vector3Stamped>(),
   };
@@ -202,6 +226,7 @@ std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
                                     const MessageFrames& frames) {
   const Transport* const transport = find_transport(topic.kind);
   if (transport) return transport->outlet(nh, topic.path, frames);
+  if (is_scan(topic.kind)) return std::make_unique<ScanOutlet>(nh, topic.path, frames);
   return std::make_unique<ArrayOutlet>(nh, topic);
 }
 

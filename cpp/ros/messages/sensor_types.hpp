@@ -4,12 +4,15 @@
 #include <sensor_msgs/BatteryState.h>
 #include <sensor_msgs/FluidPressure.h>
 #include <sensor_msgs/Imu.h>
+#include <sensor_msgs/LaserScan.h>
 #include <sensor_msgs/MagneticField.h>
 #include <sensor_msgs/NavSatFix.h>
+#include <sensor_msgs/Range.h>
 
 #include "frames.hpp"
 #include "messages.hpp"
 #include "quadcore/plugin/messages.hpp"
+#include "quadcore/range_messages.hpp"
 
 /// \file
 /// Sensor messages in ROS types. Their own frame is that of the sensor's link.
@@ -58,6 +61,27 @@ inline void to_ros(const messages::Field& field, sensor_msgs::MagneticField& mes
 }
 inline messages::Field from_ros(const sensor_msgs::MagneticField& message) {
   return {vector_of(message.magnetic_field), message.magnetic_field_covariance[0]};
+}
+
+inline void set_frames(sensor_msgs::Range& message, const MessageFrames& frames) {
+  message.header.frame_id = frames.own;
+  message.radiation_type = sensor_msgs::Range::INFRARED;
+}
+inline void to_ros(const messages::Range& range, sensor_msgs::Range& message) {
+  message.range = static_cast<float>(range.range);
+  message.min_range = static_cast<float>(range.minimum);
+  message.max_range = static_cast<float>(range.maximum);
+}
+
+/// Fill a message from the numbers of messages::scan().
+inline void to_ros(const std::vector<double>& scan, sensor_msgs::LaserScan& message) {
+  const std::size_t beams = scan.size() - messages::scan_numbers;
+  message.angle_min = static_cast<float>(scan[0]);
+  message.angle_increment = static_cast<float>(scan[1]);
+  message.angle_max = static_cast<float>(scan[0] + static_cast<double>(beams - 1) * scan[1]);
+  message.range_min = static_cast<float>(scan[2]);
+  message.range_max = static_cast<float>(scan[3]);
+  message.ranges.assign(scan.begin() + messages::scan_numbers, scan.end());
 }
 
 inline void to_ros(const messages::Battery& battery, sensor_msgs::BatteryState& message) {
