@@ -217,6 +217,7 @@ FURTHER = {
     "battery": "<fullVoltage>12.6</fullVoltage><emptyVoltage>9.9</emptyVoltage>"
     "<capacity>2.2</capacity><resistance>0.03</resistance>"
     "<faults>faults</faults>",
+    "ceiling_effect": "",
     "controller": "<law>geometric</law>",
     "downwash": "",
     "fault": "<effectiveness>faults</effectiveness><detection>0.1</detection>",

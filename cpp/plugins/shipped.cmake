@@ -1,5 +1,5 @@
 # The shipped plugins, and those with force laws for several rotors at once.
-set(QUADCORE_PLUGINS aerodynamic barometer battery controller downwash fault gps ground_effect imu lidar
+set(QUADCORE_PLUGINS aerodynamic barometer battery ceiling_effect controller downwash fault gps ground_effect imu lidar
   magnetometer motor motorpid odometry payload push range reference tachometer wind)
 set(aerodynamic_lanes aerodynamic/rotor_forces_lanes.cpp)
 set(motorpid_lanes motorpid/motor_torques_lanes.cpp)
