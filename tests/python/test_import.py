@@ -134,4 +134,4 @@ def test_a_build_names_the_packages_that_it_lacks(tmp_path):
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode != 0
-    assert "apt-get install libode-dev libtinyxml2-dev libyaml-cpp-dev\n" in done.stderr
+    assert "apt-get install libode-dev libccd-dev libtinyxml2-dev libyaml-cpp-dev\n" in done.stderr

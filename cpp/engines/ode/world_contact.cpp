@@ -4,6 +4,7 @@
 #include <string>
 
 #include "contact_surface.hpp"
+#include "cylinder_pair.hpp"
 #include "ode_math.hpp"
 
 namespace quadcore {
@@ -260,8 +261,11 @@ void WorldContact::meet(const Shape& one, const Shape& other) {
 
 /// Add the contacts of two shapes, the first of which has the say in the direction of friction.
 void WorldContact::touch(const Shape& one, const Shape& other) {
-  const int found = dCollide(one.geom.get(), other.geom.get(), most_points, touching_.data(),
-                             sizeof(dContactGeom));
+  const dGeomID geom = one.geom.get(), other_geom = other.geom.get();
+  const int found =
+      are_cylinders(geom, other_geom)
+          ? collide_cylinders(geom, other_geom, touching_.front())
+          : dCollide(geom, other_geom, most_points, touching_.data(), sizeof(dContactGeom));
   const int kept =
       keep_points(touching_, found,
                   std::min({one.surface.max_contacts, other.surface.max_contacts, max_contacts_}));
