@@ -37,6 +37,7 @@ struct TurbulentJet {
       rotors += 1;
       area += M_PI * rotor.radius * rotor.radius;
       for (const OtherRotor& other : vehicle.rotors) {
+        if (&other == &rotor) break;
         if (std::isnan(other.radius)) continue;
         square = std::max(square, (rotor.p_WRcm_W - other.p_WRcm_W).squaredNorm());
       }

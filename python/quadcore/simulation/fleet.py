@@ -39,9 +39,10 @@ class Fleet(_core.Fleet):
     """Simulate several vehicles in one world.
 
     Each vehicle is a `Simulation` with its own model, parameters, seed and spawn. A vehicle that
-    touches no other moves bit-identically as it does alone. In the engines gazebo11 and ode,
-    vehicles collide with each other and with the free bodies of the world, as in Gazebo. In the
-    engine eigen, they pass through each other, of which a warning informs.
+    touches no other, and has no plugin that observes others, moves bit-identically as it does
+    alone. In the engines gazebo11 and ode, vehicles collide with each other and with the free
+    bodies of the world, as in Gazebo. In the engine eigen, they pass through each other, of which a
+    warning informs.
 
     Parameters
     ----------

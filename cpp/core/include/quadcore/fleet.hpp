@@ -19,7 +19,8 @@ struct FleetSnapshot {
 };
 
 /// Several vehicles in one world. Each is a simulation with its own plugins, topics and seed; only
-/// the fleet advances them. A vehicle that touches no other flies bit for bit as if it were alone.
+/// the fleet advances them. A vehicle that touches no other and has no plugin that observes others
+/// flies bit for bit as if it were alone.
 class Fleet {
  public:
   /// Resets all vehicles. The vehicle that was made last is the newest in the world.
