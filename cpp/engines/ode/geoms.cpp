@@ -19,13 +19,18 @@ dGeomID create_geom(ShapeKind kind, const Vector3d& size) {
   }
 }
 
-/// Return the geom of triangles, which must outlive it.
+/// Return the geom of triangles, which must outlive it. Its contacts with a
+/// sphere are left as they are; see merge_of_sphere().
 dGeomID create_mesh(const TriangleMesh& mesh) {
   const dTriMeshDataID data = dGeomTriMeshDataCreate();
   dGeomTriMeshDataBuildSingle(
       data, mesh.vertices.data(), sizeof mesh.vertices[0], static_cast<int>(mesh.vertices.size()),
       mesh.triangles.data(), static_cast<int>(3 * mesh.triangles.size()), sizeof mesh.triangles[0]);
-  return dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr);
+  const dGeomID geom = dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr);
+  int merged = dGeomColliderMergeContactsValue_None, size = sizeof merged;
+  dGeomLowLevelControl(geom, dGeomColliderControlClass,
+                       dGeomColliderSetMergeSphereContactsControlCode, &merged, &size);
+  return geom;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "world_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "contact_surface.hpp"
@@ -40,6 +41,36 @@ int keep_points(std::vector<dContactGeom>& points, int found, int most) {
       last, points.begin() + found,
       [](const dContactGeom& one, const dContactGeom& other) { return one.depth < other.depth; });
   return most;
+}
+
+bool are_sphere_and_mesh(dGeomID one, dGeomID other) {
+  const int first = dGeomGetClass(one), second = dGeomGetClass(other);
+  return std::min(first, second) == dSphereClass && std::max(first, second) == dTriMeshClass;
+}
+
+/// Merge the points of a sphere and a mesh into one, as Gazebo's ODE does: their mean position, and
+/// the sum s of their normals times their depths. The depth is |s| / sqrt(number of points).
+int merge_of_sphere(std::vector<dContactGeom>& points, int found) {
+  if (found < 2) return found;
+  Vector3d p_W = Vector3d::Zero(), s_W = Vector3d::Zero();
+  for (int i = 0; i < found; ++i) {
+    const dContactGeom& point = points[static_cast<std::size_t>(i)];
+    p_W += vec(point.pos);
+    s_W += point.depth * vec(point.normal);
+  }
+  p_W /= found;
+  points[0].depth = std::sqrt(s_W.squaredNorm() / found);
+  s_W.normalize();
+  std::copy_n(p_W.data(), 3, points[0].pos);
+  std::copy_n(s_W.data(), 3, points[0].normal);
+  return 1;
+}
+
+/// Find at most so many contacts of two shapes as there is room for, and return their number.
+int find_points(dGeomID one, dGeomID other, std::vector<dContactGeom>& points) {
+  if (are_cylinders(one, other)) return collide_cylinders(one, other, points[0]);
+  const int found = dCollide(one, other, most_points, points.data(), sizeof points[0]);
+  return are_sphere_and_mesh(one, other) ? merge_of_sphere(points, found) : found;
 }
 
 }  // namespace
@@ -261,11 +292,7 @@ void WorldContact::meet(const Shape& one, const Shape& other) {
 
 /// Add the contacts of two shapes, the first of which has the say in the direction of friction.
 void WorldContact::touch(const Shape& one, const Shape& other) {
-  const dGeomID geom = one.geom.get(), other_geom = other.geom.get();
-  const int found =
-      are_cylinders(geom, other_geom)
-          ? collide_cylinders(geom, other_geom, touching_.front())
-          : dCollide(geom, other_geom, most_points, touching_.data(), sizeof(dContactGeom));
+  const int found = find_points(one.geom.get(), other.geom.get(), touching_);
   const int kept =
       keep_points(touching_, found,
                   std::min({one.surface.max_contacts, other.surface.max_contacts, max_contacts_}));
