@@ -72,6 +72,11 @@ struct MotorRow {
   enum : std::size_t { active, target, count };
 };
 
+/// Rows of a ball without obstacles for each vehicle, within which its centre of mass may move.
+struct ClearRow {
+  enum : std::size_t { center_W, radius = center_W + 3, count };
+};
+
 /// Force laws of the vehicles of a batch.
 struct Laws {
   RotorConventions conventions;
@@ -92,7 +97,8 @@ constexpr double unbounded = 1e30;
 struct Bounds {
   double fastest;           ///< joint rate at the start of a step [rad/s]
   bool no_tilt;             ///< whether no rotor's normal may point below the horizon
-  double reach;             ///< reach of the vehicle from its centre of mass if there is ground [m]
+  bool has_ground;          ///< whether the vehicle must stay above the ground
+  double reach;             ///< from the centre of mass; -unbounded if it touches nothing [m]
   double distance_squared;  ///< m^2
   double speed_squared;     ///< m^2/s^2
   double rate_squared;      ///< of the frame, and of all joints in total [rad^2/s^2]
@@ -109,9 +115,10 @@ struct Block {
   const std::int64_t* flies;     ///< for each vehicle -1, or 0 if it does not move
   const std::int64_t* may_spin;  ///< -1 for a vehicle without the bound `fastest`
   const std::int64_t* may_tilt;  ///< -1 for a vehicle without the bound no_tilt
+  const double* clear;           ///< table of ClearRow; null in a world without obstacles
   double* state;
   double* work;         ///< memory for two states and the sines and cosines of the rotors
-  std::int64_t* steps;  ///< number of completed steps of each vehicle
+  std::int64_t* steps;  ///< number of completed steps of each vehicle, to which steps add theirs
   const HingedTree* tree = nullptr;  ///< tree of bodies on hinges
 };
 
@@ -120,9 +127,9 @@ constexpr std::size_t work_size(std::size_t rotors) {
   return (2 * StateRow::count(rotors) + 2 * rotors) * widest_lanes;
 }
 
-/// Advance the vehicles of a block by `count` steps of dt [s] of the classical fourth-order
-/// Runge-Kutta method, W vehicles at once. A vehicle that reaches a bound stops at the end of the
-/// previous step.
+/// Advance the vehicles of a block to `count` completed steps of dt [s] of the classical
+/// fourth-order Runge-Kutta method, W vehicles at once. A vehicle that reaches a bound stops at the
+/// end of the previous step.
 template <int W>
 void step_block(const Block& block, std::int64_t count, double dt);
 

@@ -131,8 +131,10 @@ QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Table<T>& constants, con
     const T rate = state.number(StateRow::joint(StateRow::joint_rate, i));
     good &= mask<T>(laws::absolute(rate) < block.bounds.fastest) | spins;
   }
-  const T z = state.number(StateRow::position + 2), v_z = state.number(StateRow::velocity + 2);
-  good &= mask<T>(z >= block.bounds.reach + laws::ahead(laws::absolute(v_z), dt));
+  if (block.bounds.has_ground) {
+    const T z = state.number(StateRow::position + 2), v_z = state.number(StateRow::velocity + 2);
+    good &= mask<T>(z >= block.bounds.reach + laws::ahead(laws::absolute(v_z), dt));
+  }
   if (!block.bounds.no_tilt) return good;
   const Frames<T> frames(state);
   const Vec3<T> up_F{frames.R_WF.zx, frames.R_WF.zy, frames.R_WF.zz};
@@ -165,9 +167,14 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
                   block.work + numbers + first, block.work + 2 * numbers + first};
   const Table<T> constants{at.constants}, state{at.state}, moved{at.stage};
   Mask<T> flies = laws::load_bits<T>(block.flies + first);
-  Mask<T> steps{};
+  Mask<T> steps = laws::load_bits<T>(block.steps + first);
   for (std::int64_t n = 0; n < count && laws::any(flies); ++n) {
     flies &= is_quiet(block, constants, state, first, dt);
+    if (block.clear) {
+      const Vec3<T> v_W = state.vector(StateRow::velocity);
+      const T ahead = laws::ahead(laws::square_root(laws::dot(v_W, v_W)), dt);
+      flies &= stays_clear(block, first, state.vector(StateRow::position), ahead, steps, count);
+    }
     if (block.laws.turn()) turn<T>(block, at, at.state);
     differentiate<T, Stage::first, upright>(block, at, at.state, {1, dt / 2});
     differentiate<T, Stage::between, upright>(block, at, at.stage, {2, dt / 2});

@@ -86,6 +86,19 @@ QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodie
   push_frame(bodies, frame, f_F, tau_F + reaction_F);
 }
 
+/// Return the distance of the fall that OdeEngine expects while it looks ahead for contacts, and
+/// that of a speed for the vehicle's shapes. Vehicles leave before OdeEngine checks for contacts,
+/// so that it has already taken a step.
+template <class T>
+QUADCORE_LAW T distance_ahead(const Block& block, const HingedFrame<T>& frame, T speed, double dt) {
+  const double* const g = block.gravity_W;
+  const double time = (steps_beside_contact + 10) * dt,
+               fallen =
+                   (10 + laws::square_root(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])) * time * time;
+  const T rate = laws::square_root(laws::dot(frame.w_WF_F, frame.w_WF_F));
+  return fallen + time * (speed + (5 * block.bounds.reach) * rate);
+}
+
 /// Return the vehicles for which no plugin needs to check the state at the start of a step, and
 /// which will not come near the ground soon.
 template <class T>
@@ -97,16 +110,10 @@ QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
   for (std::size_t i = 0; i < block.rotors; ++i) {
     good &= mask<T>(laws::absolute(bodies.joint_rate(i + 1)) < bounds.fastest) | spins;
   }
-  if (bounds.reach > 0) {
-    // Leave before OdeEngine checks for contacts, so that it has already taken a step.
-    const double g_z = block.gravity_W[2];
-    const double time = (steps_beside_contact + 10) * dt,
-                 fallen = (10 + (g_z < 0 ? -g_z : g_z)) * time * time;
+  if (bounds.has_ground) {
     const T z = bodies.state(0).number(BodyRow::position + 2);
     const T v_z = bodies.state(0).number(BodyRow::velocity + 2);
-    const T rate = laws::square_root(laws::dot(frame.w_WF_F, frame.w_WF_F));
-    const T sinks = time * (laws::absolute(v_z) + (5 * bounds.reach) * rate);
-    good &= mask<T>(z >= bounds.reach + (fallen + sinks));
+    good &= mask<T>(z >= bounds.reach + distance_ahead(block, frame, laws::absolute(v_z), dt));
   }
   if (!bounds.no_tilt) return good;
   const Matrix3<T>& R = frame.R_WF;
@@ -147,10 +154,16 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
   Bodies<T> bodies = at.bodies(block, at.moved);
   bodies.read();
   Mask<T> flies = laws::load_bits<T>(block.flies + first);
-  Mask<T> steps{};
+  Mask<T> steps = laws::load_bits<T>(block.steps + first);
   for (std::int64_t n = 0; n < count; ++n) {
     const HingedFrame<T> frame(bodies);
     flies &= is_quiet(block, bodies, frame, first, dt);
+    if (block.clear) {
+      const Vec3<T> v_W = bodies.state(0).vector(BodyRow::velocity);
+      const T ahead = distance_ahead(block, frame, laws::square_root(laws::dot(v_W, v_W)), dt);
+      flies &=
+          stays_clear(block, first, bodies.state(0).vector(BodyRow::position), ahead, steps, count);
+    }
     if (!laws::any(flies)) break;
     push(block, at, bodies, frame);
     bodies.turn_inertias(true);

@@ -31,7 +31,12 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
                        std::size_t rotors, const World& world)
     : rotors_(rotors), gravity_W_(world.gravity_W), constants_differ_(false) {
   const LaneVehicle* first = nullptr;
-  bounds_ = {unbounded,        false, -unbounded, square(sure_distance), square(sure_speed),
+  bounds_ = {unbounded,
+             false,
+             world.ground_plane,
+             -unbounded,
+             square(sure_distance),
+             square(sure_speed),
              square(sure_rate)};
   for (const auto& vehicle : vehicles) {
     if (!vehicle) continue;
@@ -54,8 +59,8 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
   hinged_ = first->hinged;
   if (are_hinged()) {
     tree_ = hinged_->tree(world, world.contact_max_correcting_vel);
-    has_ground_ = world.ground_plane;
-    if (has_ground_) of_ground_.resize(vehicles.size());
+    has_contact_ = world.ground_plane || !world.obstacles.empty();
+    if (has_contact_) of_contact_.resize(vehicles.size());
   }
   choose_width();
 
@@ -63,6 +68,7 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
   constants_.resize(rows * (constants_differ_ ? places : widest_lanes));
   state_.resize(state_rows() * places);
   motors_.resize(MotorRow::count * rotors * places);
+  if (!world.obstacles.empty()) clear_balls_.emplace(world.obstacles, places, bounds_.reach);
   may_spin_.resize(places);
   may_tilt_.resize(places);
   for (std::size_t i = 0; i < places; ++i) {
@@ -162,6 +168,7 @@ Block LaneBlocks::view(std::size_t block, double* work, std::int64_t* steps) {
           &flies_[first],
           &may_spin_[first],
           &may_tilt_[first],
+          clear_balls_ ? clear_balls_->of_block(block) : nullptr,
           part(state_, state_rows()),
           work,
           steps,
@@ -171,7 +178,24 @@ Block LaneBlocks::view(std::size_t block, double* work, std::int64_t* steps) {
 void LaneBlocks::step(std::size_t block, std::int64_t count, double dt, double* work,
                       std::int64_t* steps) {
   std::fill_n(steps, widest_lanes, 0);
-  if (!is_empty()) step_(view(block, work, steps), count, dt);
+  if (is_empty()) return;
+  do {
+    step_(view(block, work, steps), count, dt);
+  } while (clear_balls_ && move_clear_balls(block, count, steps));
+}
+
+/// Move the clear balls of the vehicles that have stopped to their positions. Returns whether a
+/// ball has moved, so that its vehicle may continue.
+bool LaneBlocks::move_clear_balls(std::size_t block, std::int64_t count,
+                                  const std::int64_t* steps) {
+  static_assert(StateRow::position == 0 && BodyRow::position == 0, "both begin a state");
+  bool has_moved = false;
+  for (std::size_t lane = 0; lane < widest_lanes; ++lane) {
+    const std::size_t vehicle = block * widest_lanes + lane;
+    if (!flies(vehicle) || steps[lane] == count) continue;
+    has_moved |= clear_balls_->move(vehicle, column(state_, state_rows(), vehicle));
+  }
+  return has_moved;
 }
 
 void LaneBlocks::show(std::size_t block, double* work) {
@@ -274,7 +298,7 @@ void LaneBlocks::get_engine_state(std::size_t vehicle, std::vector<double>& engi
     engine[place] = rows[row * widest_lanes];
   };
   if (!are_hinged()) return for_each_number(rotors_, get);
-  if (has_ground_) engine = of_ground_[vehicle];
+  if (has_contact_) engine = of_contact_[vehicle];
   for_each_hinged_number(rotors_, get);
   if (moved) turn_hinged(rotors_, engine.data());
 }
@@ -286,12 +310,12 @@ void LaneBlocks::set_engine_state(std::size_t vehicle, const std::vector<double>
   };
   if (!are_hinged()) return for_each_number(rotors_, set);
   for_each_hinged_number(rotors_, set);
-  if (has_ground_) of_ground_[vehicle] = engine;
+  if (has_contact_) of_contact_[vehicle] = engine;
 }
 
 void LaneBlocks::let_fly(std::size_t vehicle, bool flies) {
   flies_[vehicle] = -std::int64_t{flies};
-  if (has_ground_ && !is_clear_of_contact(of_ground_[vehicle])) flies_[vehicle] = 0;
+  if (has_contact_ && !is_clear_of_contact(of_contact_[vehicle])) flies_[vehicle] = 0;
 }
 
 }  // namespace quadcore::batch

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "clear_balls.hpp"
 #include "lane_vehicle.hpp"
 #include "quadcore/plugin/rotor_rows.hpp"
 
@@ -39,7 +41,7 @@ class LaneBlocks {
   /// \param steps  number of completed steps of each vehicle of the block, up to `count`
   void step(std::size_t block, std::int64_t count, double dt, double* work, std::int64_t* steps);
 
-  /// Convert to and from the state that the engine saves, without changing the ground's part.
+  /// Convert to and from the state that the engine saves, without changing the part of contacts.
   void get_engine_state(std::size_t vehicle, std::vector<double>& state) const;
   void set_engine_state(std::size_t vehicle, const std::vector<double>& state);
   /// Write the states of a block in rows of StateRow, but without the angles of hinged vehicles.
@@ -54,16 +56,16 @@ class LaneBlocks {
   struct Saved {
     LaneNumbers state, motors;
     std::vector<std::int64_t> flies, may_spin, may_tilt;
-    std::vector<std::vector<double>> of_ground;
+    std::vector<std::vector<double>> of_contact;
   };
-  Saved save() const { return {state_, motors_, flies_, may_spin_, may_tilt_, of_ground_}; }
+  Saved save() const { return {state_, motors_, flies_, may_spin_, may_tilt_, of_contact_}; }
   void restore(const Saved& saved) {
     state_ = saved.state;
     motors_ = saved.motors;
     flies_ = saved.flies;
     may_spin_ = saved.may_spin;
     may_tilt_ = saved.may_tilt;
-    of_ground_ = saved.of_ground;
+    of_contact_ = saved.of_contact;
   }
 
  private:
@@ -80,6 +82,7 @@ class LaneBlocks {
   }
   void choose_width();
   double hinged_angle(std::size_t vehicle, const double* shown, std::size_t j) const;
+  bool move_clear_balls(std::size_t block, std::int64_t count, const std::int64_t* steps);
   Block view(std::size_t block, double* work, std::int64_t* steps);
 
   std::size_t rotors_;
@@ -89,12 +92,13 @@ class LaneBlocks {
   bool constants_differ_;  ///< whether the constants differ; otherwise all blocks share one table
   LaneNumbers constants_, motors_, state_;
   std::vector<std::int64_t> flies_, may_spin_, may_tilt_;
-  std::vector<int> places_;  ///< see LaneVehicle
+  std::vector<int> places_;                ///< see LaneVehicle
+  std::optional<ClearBalls> clear_balls_;  ///< empty in a world without obstacles
   std::shared_ptr<const HingedModel> hinged_;
-  HingedTree tree_ = {};     ///< tree of hinged vehicles
-  bool has_ground_ = false;  ///< whether hinged vehicles store contacts
+  HingedTree tree_ = {};      ///< tree of hinged vehicles
+  bool has_contact_ = false;  ///< whether hinged vehicles store contacts
   /// Last saved state of the engine for each hinged vehicle.
-  std::vector<std::vector<double>> of_ground_;
+  std::vector<std::vector<double>> of_contact_;
   void (*step_)(const Block&, std::int64_t, double) = nullptr;
   void (*show_)(const Block&, double*) = nullptr;
 };

@@ -4,10 +4,10 @@
 #include <cstring>
 #include <type_traits>
 
-#include "eigen/compliant_ground.hpp"
 #include "eigen/gyrostat.hpp"
 #include "hinged_block.hpp"
 #include "ode/ode_engine.hpp"
+#include "ode/world_contact.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/rotor_shares.hpp"
 
@@ -26,10 +26,10 @@ class Rows {
   std::vector<double>& rows_;
 };
 
-void put_gyrostat(const Model& model, const World& world, LaneVehicle& vehicle) {
+void put_gyrostat(const Model& model, LaneVehicle& vehicle) {
   using Row = ConstantRow;
   const Gyrostat body(model);
-  if (world.ground_plane) vehicle.reach = CompliantGround(model, body, world.ground).reach();
+  vehicle.reach = std::max(-unbounded, find_reach(model, body));
   vehicle.laws.upright = body.upright;
   vehicle.laws.normals_turn = body.normals_turn;
   Rows rows(vehicle.constants);
@@ -49,10 +49,10 @@ void put_gyrostat(const Model& model, const World& world, LaneVehicle& vehicle) 
   }
 }
 
-/// Return the reach of the shapes from the frame's centre of mass [m], or nothing if rotors have
-/// shapes that are not bodies of revolution.
+/// Return the reach of the shapes from the frame's centre of mass [m], -unbounded without shapes,
+/// or nothing if rotors have shapes that are not bodies of revolution.
 std::optional<double> reach_of(const Model& model, const std::vector<Reach>& reaches) {
-  double furthest = 0;
+  double furthest = -unbounded;
   for (const Reach& reach : reaches) {
     double arm = 0;
     if (reach.body > 0) {
@@ -71,10 +71,14 @@ bool put_hinged(const Model& model, const World& world, LaneVehicle& vehicle) {
   const OdeEngine engine(model, world, gazebo11_recipe);
   const HingedModel hinged(engine.bodies());
   if (!engine.may_float() || !hinged.is_star()) return false;
-  if (world.ground_plane) {
+  if (world.ground_plane || !world.obstacles.empty()) {
     const std::optional<double> reach = reach_of(engine.model(), engine.reaches());
     if (!reach) return false;
     vehicle.reach = *reach;
+  }
+  // Near obstacles, the engine leaves the floating steps even without shapes.
+  if (!world.obstacles.empty()) {
+    vehicle.reach = std::max(vehicle.reach, reach_of_shapes(engine.model()));
   }
   vehicle.hinged = std::make_shared<const HingedModel>(hinged);
   const std::size_t rotors = model.joints.size();
@@ -105,16 +109,15 @@ std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
   const std::size_t rotors = model.joints.size();
   const bool like_gazebo = simulation.engine_name() == "gazebo11";
   if (!(like_gazebo || simulation.engine_name() == "eigen") || !force_laws.all_quiet ||
-      !simulation.world().obstacles.empty() || !simulation.world().free_bodies.empty() ||
-      rotors > most_rotors || force_laws.rotor_forces.size() > 1 ||
-      force_laws.frame_drags.size() > 1 || force_laws.airframes.size() > 1 ||
-      force_laws.motor_torques.size() != 1) {
+      !simulation.world().free_bodies.empty() || rotors > most_rotors ||
+      force_laws.rotor_forces.size() > 1 || force_laws.frame_drags.size() > 1 ||
+      force_laws.airframes.size() > 1 || force_laws.motor_torques.size() != 1) {
     return std::nullopt;
   }
   LaneVehicle vehicle{{}, unbounded, false, -unbounded, {}, {}, {}};
   vehicle.constants.resize(ConstantRow::count(rotors));
   if (!like_gazebo) {
-    put_gyrostat(model, simulation.world(), vehicle);
+    put_gyrostat(model, vehicle);
   } else if (!put_hinged(model, simulation.world(), vehicle)) {
     return std::nullopt;
   }

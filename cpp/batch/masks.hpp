@@ -28,4 +28,16 @@ QUADCORE_LAW Mask<T> is_sound(const Bounds& bounds, const Outcome<T>& left) {
          mask<T>(left.joint_rates_squared < bounds.rate_squared);
 }
 
+/// Return the vehicles that have further steps to take, and stay in their balls without obstacles
+/// for a distance `ahead` [m]. The block has such balls.
+template <class T>
+QUADCORE_LAW Mask<T> stays_clear(const Block& block, std::size_t first, const Vec3<T>& p_W, T ahead,
+                                 const Mask<T>& steps, std::int64_t count) {
+  const Table<T> balls{block.clear + first};
+  const Vec3<T> away_W = p_W - balls.vector(ClearRow::center_W);
+  const T left = balls.number(ClearRow::radius) - ahead;
+  return mask<T>(left > 0) & mask<T>(laws::dot(away_W, away_W) < left * left) &
+         mask<T>(steps < count);
+}
+
 }  // namespace quadcore::batch

@@ -100,17 +100,35 @@ def test_obstacles_far_away_change_no_byte(engine, tmp_path):
     assert flights[0].state.orientation.tolist() == flights[1].state.orientation.tolist()
 
 
-def test_a_batch_among_obstacles_is_bit_identical_to_single_flights(tmp_path):
+@pytest.mark.parametrize("engine", ["gazebo11", "ode", "eigen"])
+def test_a_batch_among_obstacles_is_bit_identical_to_single_flights(engine, tmp_path):
+    # Two vehicles fall on a box, one falls past it, and one touches nothing.
     world = write_world(tmp_path, solid(BOX, "0.1 0 1 0.3 0.2 0.1"))
-    spawns = np.array([[0, 0, 2, 0.1, 0, 0], [0.3, 0.1, 1.9, 0, 0, 0], [5, 5, 5, 0, 0, 0]])
-    batch = qc.BatchSimulation("quadrotor", 3, engine="gazebo11", world=world, spawn=spawns)
-    speeds = np.full((3, 4), 200.0) * [1, -1, 1, -1]
-    batch.step(speeds, 600)
-    for i, spawn in enumerate(spawns):
-        single = qc.Simulation("quadrotor", world=world, spawn=spawn)
-        single.command(speeds[i])
-        single.step(600)
-        assert batch.state.position[i].tolist() == single.state.position.tolist()
+    spawns = np.array(
+        [[0, 0, 2, 0.1, 0, 0], [0.3, 0.1, 6, 0, 0, 0], [2, 1, 3, 0, 0.2, 0], [9, 9, 9, 0, 0, 0]]
+    )
+    batch = qc.BatchSimulation("quadrotor", 4, engine=engine, world=world, spawn=spawns)
+    speeds = np.full((4, 4), 200.0) * [1, -1, 1, -1]
+    singles = [
+        qc.Simulation("quadrotor", engine=engine, world=world, spawn=spawn) for spawn in spawns
+    ]
+    for steps in (1, 700, 1, 900):
+        batch.step(speeds, steps)
+        for i, single in enumerate(singles):
+            single.command(speeds[i])
+            single.step(steps)
+            assert batch.state.position[i].tolist() == single.state.position.tolist()
+            assert batch.state.orientation[i].tolist() == single.state.orientation.tolist()
+
+
+@pytest.mark.parametrize("engine", ["gazebo11", "eigen"])
+def test_controllers_fly_a_batch_through_a_slalom_bit_identical_to_single_flights(engine):
+    batch = qc.BatchSimulation("quadrotor", 9, engine=engine, world="slalom", seed=np.arange(9))
+    logs = batch.run(4.0, log=[0, 8], controller="geometric", reference="eight")
+    for of_batch, i in zip(logs, (0, 8)):
+        single = qc.Simulation("quadrotor", engine=engine, world="slalom", seed=i)
+        log = single.run(4.0, controller="geometric", reference="eight")
+        assert of_batch.position.tolist() == log.position.tolist()
 
 
 def test_a_snapshot_on_an_obstacle_restores_exactly(tmp_path):

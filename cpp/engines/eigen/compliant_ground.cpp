@@ -22,10 +22,9 @@ constexpr double hardest_start = 10;
 CompliantGround::CompliantGround(const Model& model, const Gyrostat& body, const Surface& ground)
     : model_(model),
       weight_(World{}.gravity_W.norm() / body.inverse_mass),
-      reach_(-std::numeric_limits<double>::infinity()) {
+      reach_(find_reach(model, body)) {
   check_collisions(model);
   const std::vector<StableContact> stable = stable_contacts(model, body);
-  const std::vector<Eigen::Isometry3d> poses = link_poses(model);
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     for (const Collision& collision : model.links[i].collisions) {
       Shape shape;
@@ -39,8 +38,6 @@ CompliantGround::CompliantGround(const Model& model, const Gyrostat& body, const
       shape.mu1 = joint_mu1(collision.surface, ground);
       shape.mu2 = joint_mu2(collision.surface, ground);
       shapes_.push_back(shape);
-      const Vector3d p_CL = poses[i].translation() - body.p_FCcm_F;
-      reach_ = std::max(reach_, p_CL.norm() + collision.pose.xyz.norm() + shape.reach);
     }
   }
 }

@@ -29,8 +29,6 @@ class CompliantGround {
   bool is_near(double z_WC, double v_z, double dt) const {
     return z_WC < reach_ + laws::ahead(std::abs(v_z), dt);
   }
-  /// Return the reach of the shapes from the vehicle's centre of mass [m]; negative without shapes.
-  double reach() const { return reach_; }
   /// Return whether the vehicle may touch the ground within dt [s], given its motion.
   bool is_ahead(const Kinematics& kinematics, double dt) const;
   /// Throw Error if the vehicle is so deep in the ground that the springs would throw it up.

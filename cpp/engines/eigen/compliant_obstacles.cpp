@@ -44,6 +44,7 @@ CompliantObstacles::CompliantObstacles(const Model& model, const Gyrostat& body,
                                        std::vector<Obstacle> obstacles)
     : model_(model),
       weight_(World{}.gravity_W.norm() / body.inverse_mass),
+      reach_(find_reach(model, body)),
       obstacles_(std::move(obstacles)),
       clear_(obstacles_) {
   check_collisions(model);
@@ -62,13 +63,12 @@ CompliantObstacles::CompliantObstacles(const Model& model, const Gyrostat& body,
       shape.radius = collision.kind == ShapeKind::sphere ? collision.size.x() : 0;
       shape.reach = outer_radius(collision.kind, collision.size);
       shape.revolves = i > 0 && revolves(model, i, collision);
+      shape.turns = i > 0 && !shape.revolves;
       shape.stable = stable[shapes_.size()];
       shape.stable.pressing *= shared_stiffness;
       shape.stable.rubbing *= shared_stiffness;
       most_points = std::max(most_points, shape.points_S.size());
       shapes_.push_back(shape);
-      const Vector3d p_CL = poses[i].translation() - body.p_FCcm_F;
-      reach_ = std::max(reach_, p_CL.norm() + collision.pose.xyz.norm() + shape.reach);
     }
   }
   // No step allocates memory.
@@ -79,14 +79,27 @@ CompliantObstacles::CompliantObstacles(const Model& model, const Gyrostat& body,
 }
 
 bool CompliantObstacles::is_near(const Vector3d& p_WC, double speed, double dt) {
-  near_.clear();
   if (shapes_.empty()) return false;
   const double radius = reach_ + laws::ahead(speed, dt);
   if (clear_.is_free(p_WC, radius)) return false;
+  near_.clear();
   for (const Obstacle& obstacle : obstacles_) {
     if (least_distance_to(obstacle, p_WC) <= radius) near_.push_back(&obstacle);
   }
   return true;
+}
+
+bool CompliantObstacles::is_ahead(const Kinematics& k, double dt) const {
+  for (const Shape& shape : shapes_) {
+    const LinkMotion motion = find_shape_motion(model_, k, shape.link, *shape.collision);
+    const double turning = shape.turns ? motion.w_W.norm() : k.w_WF_F.norm();
+    const double speed = motion.velocity(motion.p_WS).norm() + turning * shape.reach;
+    const double radius = shape.reach + laws::ahead(speed, dt);
+    for (const Obstacle* obstacle : near_) {
+      if (least_distance_to(*obstacle, motion.p_WS) <= radius) return true;
+    }
+  }
+  return false;
 }
 
 void CompliantObstacles::find_touches(const Vector3d& p_W, double radius) {

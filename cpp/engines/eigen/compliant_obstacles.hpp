@@ -29,8 +29,8 @@ class CompliantObstacles {
   /// Return whether the vehicle may touch an obstacle within dt [s], given the position and speed
   /// of its centre of mass. Away from obstacles, this takes one comparison.
   bool is_near(const Vector3d& p_WC, double speed, double dt);
-  /// Return the reach of the shapes from the vehicle's centre of mass [m].
-  double reach() const { return reach_; }
+  /// Return the same given its motion, after is_near().
+  bool is_ahead(const Kinematics& kinematics, double dt) const;
   /// Throw Error if the vehicle is so deep in an obstacle that the springs would throw it off.
   void refuse_deep(const Kinematics& kinematics, double dt);
 
@@ -55,6 +55,7 @@ class CompliantObstacles {
     double radius;  ///< of the ball about each point: that of a sphere, else 0 [m]
     double reach;   ///< distance of its farthest point from its centre [m]
     bool revolves;  ///< whether it is a body of revolution about the joint of its rotor
+    bool turns;     ///< whether it turns with a rotor about whose joint it is none
     StableContact stable;
     Bristle bristle;
   };
@@ -75,8 +76,8 @@ class CompliantObstacles {
   void find_touches(const Vector3d& p_W, double radius);
 
   const Model& model_;
-  double weight_;     ///< weight of the vehicle under Gazebo's gravity [N]
-  double reach_ = 0;  ///< reach of the shapes from the vehicle's centre of mass [m]
+  double weight_;  ///< weight of the vehicle under Gazebo's gravity [N]
+  double reach_;   ///< reach of the shapes from the vehicle's centre of mass [m]
   std::vector<Obstacle> obstacles_;
   ClearBall clear_;
   std::vector<Shape> shapes_;

@@ -181,8 +181,7 @@ bool EigenEngine::is_at_ground(double dt) const {
 bool EigenEngine::is_at_obstacle(double dt) {
   const Eigen::Map<const Vector3d> p_WC(state_.data() + GyrostatState::position);
   const Eigen::Map<const Vector3d> v_WC(state_.data() + GyrostatState::velocity);
-  const double turning = kinematics_.w_WF_F.norm() * obstacles_->reach();
-  return obstacles_->is_near(p_WC, v_WC.norm() + turning, dt);
+  return obstacles_->is_near(p_WC, v_WC.norm(), dt) && obstacles_->is_ahead(kinematics_, dt);
 }
 
 void EigenEngine::step_in_contact(double time, double dt, int parts) {

@@ -1,5 +1,8 @@
 #include "gyrostat.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
@@ -80,6 +83,19 @@ Gyrostat::Gyrostat(const Model& model) : rotors(model.joints.size()) {
     upright &= is_along_z(axis_F) && is_along_z(R_FR.col(2)) && is_along_z(R_FR.row(2));
   }
   inverse_reduced_I_F = reduced.inverse();
+}
+
+double find_reach(const Model& model, const Gyrostat& body) {
+  double reach = -std::numeric_limits<double>::infinity();
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model);
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const double arm = (poses[i].translation() - body.p_FCcm_F).norm();
+    for (const Collision& collision : model.links[i].collisions) {
+      reach = std::max(
+          reach, arm + collision.pose.xyz.norm() + outer_radius(collision.kind, collision.size));
+    }
+  }
+  return reach;
 }
 
 Model with_round_rotors(const Model& model, std::vector<std::string>& warnings) {

@@ -25,6 +25,10 @@ struct Gyrostat {
   explicit Gyrostat(const Model& model);
 };
 
+/// Return the reach of a vehicle's shapes from its centre of mass in all attitudes [m]; negative
+/// without shapes.
+double find_reach(const Model& model, const Gyrostat& body);
+
 /// Return the model with the inertia of each rotor averaged over its rotation. An inertia with the
 /// axis as a principal axis is then symmetric about it.
 /// \param warnings  receives the rotors that were not symmetric
