@@ -60,8 +60,8 @@ void Batch::Implementation::follow_together(const CommandAll& command_all, doubl
   const control::Schedule schedule(rate, delay, size() * command_width());
   std::vector<double> pending(schedule.state_size()), states(size() * state_width()),
       measured(size() * Batch::odometry_width);
-  std::vector<control::TotalVariation> rates(size(), control::TotalVariation(common_.rotors())),
-      commands(size(), control::TotalVariation(command_width()));
+  std::vector<TotalVariation> rates(size(), TotalVariation(common_.rotors())),
+      commands(size(), TotalVariation(command_width()));
   get_state(states.data());
   log_all(guided, states);
   note_rates(states, rates);
@@ -135,7 +135,7 @@ batch::Follower Batch::Implementation::make_follower(std::size_t i, const batch:
           &errors,
           seed_of(i, sensor),
           placements_[i] * errors.draws(),
-          control::TotalVariation(command_width())};
+          TotalVariation(command_width())};
 }
 
 std::uint64_t Batch::Implementation::seed_of(std::size_t i, const batch::LaneSensor& sensor) const {
@@ -177,7 +177,7 @@ messages::Odometry Batch::Implementation::measure(std::size_t i, const std::stri
 }
 
 void Batch::Implementation::note_rates(const std::vector<double>& states,
-                                       std::vector<control::TotalVariation>& rates) const {
+                                       std::vector<TotalVariation>& rates) const {
   for (std::size_t i = 0; i < size(); ++i) {
     if (failures_[i].empty()) rates[i].add(&states[i * state_width() + 13]);
   }

@@ -107,8 +107,7 @@ class Batch::Implementation {
 
   messages::Odometry measure(std::size_t i, const std::string& topic, const double* shown) const;
 
-  void note_rates(const std::vector<double>& states,
-                  std::vector<control::TotalVariation>& rates) const;
+  void note_rates(const std::vector<double>& states, std::vector<TotalVariation>& rates) const;
 
   /// Add a row to the log of each vehicle that has not failed.
   void log_all(std::vector<BatchGuided>& guided, const std::vector<double>& states) const;

@@ -5,8 +5,8 @@
 
 #include "block.hpp"
 #include "quadcore/batch.hpp"
-#include "quadcore/control/total_variation.hpp"
 #include "quadcore/odometry_errors.hpp"
+#include "quadcore/total_variation.hpp"
 
 namespace quadcore::batch {
 
@@ -18,7 +18,7 @@ struct Follower {
   const OdometryErrors* errors;
   std::uint64_t seed;  ///< of the odometry
   double draws;        ///< random numbers before the measurement at the start
-  control::TotalVariation commands;
+  TotalVariation commands;
   bool has_left = false;  ///< whether it has left the lanes; its results are then incomplete
 
   /// Speeds in effect at the end; empty before the first command.

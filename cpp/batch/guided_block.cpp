@@ -21,7 +21,7 @@ GuidedBlock::GuidedBlock(LaneBlocks& lanes, std::size_t block, double dt, double
       block_(block),
       dt_(dt),
       work_(work),
-      rates_(lanes.rotors(), control::TotalVariation(widest_lanes)) {}
+      rates_(lanes.rotors(), TotalVariation(widest_lanes)) {}
 GuidedBlock::~GuidedBlock() = default;
 
 void GuidedBlock::add(Follower& follower) {
@@ -73,7 +73,7 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n,
     }
   }
   for (const Follower& follower : followers) {
-    for (const control::TotalVariation& rates : rates_) {
+    for (const TotalVariation& rates : rates_) {
       follower.guided->rate_variation.push_back(rates.sums()[follower.lane()]);
     }
     follower.guided->command_variation = follower.commands.sums();

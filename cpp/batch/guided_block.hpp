@@ -50,8 +50,8 @@ class GuidedBlock {
   };
   std::vector<Shared> previews_;
   std::vector<LaneControls> in_lanes_;
-  std::vector<Control> alone_;                  ///< controllers that are only for single vehicles
-  std::vector<control::TotalVariation> rates_;  ///< of the vehicles, for each rotor
+  std::vector<Control> alone_;         ///< controllers that are only for single vehicles
+  std::vector<TotalVariation> rates_;  ///< of the vehicles, for each rotor
 };
 
 /// Advance a simulation by n steps under a controller.

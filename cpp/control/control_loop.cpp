@@ -1,5 +1,7 @@
 #include "quadcore/control/control_loop.hpp"
 
+#include <algorithm>
+
 namespace quadcore::control {
 
 ControlLoop::ControlLoop(Simulation& simulation, Flight& flight, double rate, double delay)
@@ -15,12 +17,10 @@ ControlLoop::ControlLoop(Simulation& simulation, Flight& flight, double rate, do
 
 void ControlLoop::advance(std::int64_t n, const Call& call) {
   while (n > 0) {
-    std::int64_t steps = prepare(n, call);
+    const std::int64_t steps = prepare(n, call);
+    flight_.advance(steps, &rates_);
+    step_ += static_cast<double>(steps);
     n -= steps;
-    for (; steps > 0; --steps) {
-      flight_.advance(1);
-      finish();
-    }
   }
 }
 
@@ -32,9 +32,7 @@ std::int64_t ControlLoop::prepare(std::int64_t n, const Call& call) {
     commands_.add(speeds);
   }
   const double event = schedule_.next_event(step_, dt, state_.data());
-  std::int64_t steps = 0;
-  while (steps < n && step_ + static_cast<double>(steps) < event) ++steps;
-  return steps;
+  return static_cast<std::int64_t>(std::min(static_cast<double>(n), event - step_));
 }
 
 void ControlLoop::finish() {

@@ -34,8 +34,8 @@ class Flight {
          bool wrenches, const std::vector<std::string>& topics = {});
 
   /// Simulate n steps, each with the command that is due at its start. Throws like step(); logged
-  /// rows remain.
-  void advance(std::int64_t n);
+  /// rows remain. The rates are those of Simulation::step().
+  void advance(std::int64_t n, TotalVariation* rates = nullptr);
 
   /// \name Parts of advance(), for vehicles that a Fleet advances
   /// @{

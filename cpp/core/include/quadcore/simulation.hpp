@@ -15,6 +15,7 @@
 #include "quadcore/plugin/model.hpp"
 #include "quadcore/plugin/world.hpp"
 #include "quadcore/state.hpp"
+#include "quadcore/total_variation.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 
@@ -85,7 +86,8 @@ class Simulation : private ForceField {
   void move_by(Motion motion);
   /// Advance by n steps. Throws FlightError if the flight fails; afterwards only restore, reset and
   /// set_state make the simulation usable again.
-  void step(std::int64_t n = 1);
+  /// \param rates  unless null, the joint rates after each step are added to it
+  void step(std::int64_t n = 1, TotalVariation* rates = nullptr);
   /// Return whether a plugin accepts command().
   bool takes_commands() const;
   /// Return the number of values in a command. Throws InputError if no plugin accepts commands.

@@ -33,13 +33,13 @@ Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::in
   wrenches_size_ = rows_.wrenches.size();
 }
 
-void Flight::advance(std::int64_t n) {
+void Flight::advance(std::int64_t n, TotalVariation* rates) {
   const auto rows = static_cast<std::size_t>(std::max<std::int64_t>(n, 0) / log_every_ + 1);
   make_room(rows_.table, rows * row_size_);
   make_room(rows_.wrenches, rows * wrenches_size_);
   while (n > 0) {
     const std::int64_t steps = prepare(n);
-    simulation_.step(steps);
+    simulation_.step(steps, rates);
     finish(steps);
     n -= steps;
   }

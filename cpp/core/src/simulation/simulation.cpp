@@ -67,7 +67,7 @@ void Simulation::warn(const std::string& warning) {
   if (!warning.empty()) warnings_.push_back(warning);
 }
 
-void Simulation::step(std::int64_t n) {
+void Simulation::step(std::int64_t n, TotalVariation* rates) {
   if (n < 0)
     throw InputError("the step count is " + std::to_string(n) + ". Give a whole number >= 0.");
   check_usable();
@@ -80,6 +80,10 @@ void Simulation::step(std::int64_t n) {
         engine_->step(time(), dt_, *this);
       }
       end_step();
+      if (rates) {
+        const RotorMotions& rotors = engine_->kinematics().rotors;
+        rates->add_each([&rotors](std::size_t i) { return rotors.number(MotionRow::rate, i); });
+      }
     }
     show_state();
   } catch (...) {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "quadcore/control/schedule.hpp"
-#include "quadcore/control/total_variation.hpp"
 #include "quadcore/flight.hpp"
 #include "quadcore/plugin/export.hpp"
+#include "quadcore/total_variation.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
@@ -28,11 +28,16 @@ class ControlLoop {
 
   /// Advances n steps. Throws what the flight, a command and the controller throw.
   void advance(std::int64_t n, const Call& call);
+
+  /// \name Parts of advance(), for vehicles that a Fleet advances
+  /// @{
+
   /// Call the controller and command the rotors if that is due. Returns the number of steps, at
-  /// most n, until the next event. For vehicles that a Fleet advances.
+  /// most n, until the next event.
   std::int64_t prepare(std::int64_t n, const Call& call);
   /// Take note of a step after prepare().
   void finish();
+  /// @}
 
   /// Return the total variation of the magnitude of each rotor's joint rate over all steps so far
   /// [rad/s].

@@ -4,9 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "quadcore/plugin/export.hpp"
-
-namespace quadcore::control {
+namespace quadcore {
 
 /// Sums the changes of the magnitudes of some numbers, their total variation.
 class TotalVariation {
@@ -16,10 +14,17 @@ class TotalVariation {
 
   /// Add the next values of the numbers.
   void add(const double* values) {
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const double value = std::abs(values[i]);
-      if (!is_first_) sums_[i] += std::abs(value - last_[i]);
-      last_[i] = value;
+    add_each([values](std::size_t i) { return values[i]; });
+  }
+  /// Add the next values; value(i) returns that of number i.
+  template <class Value>
+  void add_each(const Value& value) {
+    double *const last = last_.data(), *const sums = sums_.data();
+    const std::size_t count = sums_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double size = std::abs(value(i));
+      if (!is_first_) sums[i] += std::abs(size - last[i]);
+      last[i] = size;
     }
     is_first_ = false;
   }
@@ -31,4 +36,4 @@ class TotalVariation {
   bool is_first_ = true;
 };
 
-}  // namespace quadcore::control
+}  // namespace quadcore
