@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How well the ROS node keeps up: messages lost, latency of a command, fastest flight.
+"""How well the ROS node keeps up: messages lost, latency of a command, fastest flight, lockstep.
 
 Build a workspace with -DQUADCORE_BUILD_BENCHMARKS=ON and source its setup.bash first. Options:
 ``ros_latency.py [SECONDS [SAMPLES]]``, 60 s of odometry and 1000 commands by default.
@@ -81,6 +81,10 @@ def main():
             print(f"as fast as possible, odometry at every step: {count / elapsed:.0f} per s")
             print(f"    real-time factor         {simulated / elapsed:9.1f}   at least 20")
             print(f"    lost                     {lost:9.0f}")
+        with node(model, "_real_time_factor:=0", "_lockstep:=true"):
+            count, _, simulated, elapsed = map(float, probe("answer", 5).split())
+            print(f"in lockstep, a roscpp node answers each step: {count / elapsed:.0f} per s")
+            print(f"    real-time factor         {simulated / elapsed:9.1f}   at least 20")
 
 
 main()

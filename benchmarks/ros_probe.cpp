@@ -2,6 +2,7 @@
 //   ros_probe count SECONDS    messages of odom in that time: count, lost, simulated seconds
 //   ros_probe latency SAMPLES  time from a vel_cmd to the odometry that reflects it (us, one a
 //   line)
+//   ros_probe answer SECONDS   answers each odometry message: count, lost, simulated seconds
 
 #include <nav_msgs/Odometry.h>
 #include <ros/callback_queue.h>
@@ -25,7 +26,12 @@ using Clock = std::chrono::steady_clock;
 
 class Counter {
  public:
-  void run(ros::NodeHandle& nh, double seconds) {
+  /// \param answers  whether each message is answered by a command, as a node in lockstep does
+  void run(ros::NodeHandle& nh, double seconds, bool answers) {
+    if (answers) {
+      publisher_ = nh.advertise<std_msgs::Float64MultiArray>("quadrotor/vel_cmd", 1);
+      command_.data = {hover, -hover, hover, -hover};
+    }
     const ros::Subscriber subscriber =
         nh.subscribe("odom", 0, &Counter::take, this, ros::TransportHints().tcpNoDelay());
     while (count_ == 0) ros::spinOnce();
@@ -42,11 +48,16 @@ class Counter {
 
  private:
   void take(const nav_msgs::Odometry& message) {
+    if (publisher_) publisher_.publish(command_);
     if (count_ > 0) lost_ += std::lround((message.header.stamp - last_).toSec() * 1000) - 1;
     last_ = message.header.stamp;
     ++count_;
   }
 
+  static constexpr double hover = 471.2;  // rad/s
+
+  ros::Publisher publisher_;
+  std_msgs::Float64MultiArray command_;
   long count_ = 0;
   long lost_ = 0;
   ros::Time last_;
@@ -118,8 +129,9 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "probe");
   if (argc != 3) return 2;
   ros::NodeHandle nh;
-  if (std::string(argv[1]) == "count") {
-    Counter().run(nh, std::atof(argv[2]));
+  const std::string mode = argv[1];
+  if (mode == "count" || mode == "answer") {
+    Counter().run(nh, std::atof(argv[2]), mode == "answer");
   } else {
     Latency().run(nh, std::atoi(argv[2]));
   }

@@ -20,6 +20,8 @@ constexpr auto time_to_connect = std::chrono::milliseconds(300);
 constexpr auto time_between_reminders = std::chrono::seconds(5);
 /// After this time, the first answer counts as lost.
 constexpr auto time_to_begin = std::chrono::seconds(10);
+/// Maximum number of steps between two odometry messages that a command makes itself.
+constexpr int most_steps_with_command = 100;
 /// Rounding difference of two clocks, as a part of a step.
 constexpr double rounding = 1e-3;
 
@@ -179,7 +181,11 @@ void FlightThread::wait_for_command(Lock& lock) {
   const std::int64_t taken = commands_.taken_count();
   // After each command, the controller has the full timeout for the next one.
   const auto has_news = [&] { return commands_.taken_count() != taken || is_interrupted(); };
-  if (!wait(lock, may_begin_late ? time_to_begin : timeout, has_news) && !commands_.settle()) {
+  lends_ = true;
+  wait(lock, may_begin_late ? time_to_begin : timeout, has_news);
+  lends_ = false;
+  while (is_lent_) changed_.wait_for(lock, longest_sleep);
+  if (!has_news() && !commands_.settle()) {
     if (commands_.has_begun()) {
       commands_.give_up_late();
       char text[120];
@@ -201,6 +207,27 @@ void FlightThread::wait_for_command(Lock& lock) {
   if (pacer_.due() < Pacer::Clock::now()) pacer_.restart();
 }
 
+/// Whether a command may make steps itself, which saves two hand-overs between threads for each
+/// message: if the flight's thread waits for it, and would not have to wait after it.
+bool FlightThread::may_step_with_command() const {
+  return lends_ && real_time_factor_ == 0 && !settings_.follows_clock && !listener_.waits_to_feed();
+}
+
+/// Makes the steps up to the next odometry message in the thread of the command, while the flight's
+/// thread waits. Further steps are left to that thread.
+void FlightThread::step_with_command(Lock& lock) {
+  is_lent_ = true;
+  const double count_before = count_odometry();
+  for (int i = 0; i < most_steps_with_command && count_odometry() == count_before; ++i) {
+    if (is_interrupted() || commands_.is_awaited() || simulation_.time() > hold_) break;
+    lock.unlock();
+    take_step();
+    lock.lock();
+  }
+  is_lent_ = false;
+  if (is_interrupted() || !commands_.is_awaited()) changed_.notify_all();
+}
+
 void FlightThread::run_changes(Lock& lock) {
   if (clock_ && !may_step()) join_clock(lock);  // a paused flight is behind the clock
   while (!changes_.empty()) {
@@ -218,8 +245,7 @@ void FlightThread::take_step() {
   Lock lock(mutex_);
   report_.time = simulation_.time();
   ++report_.steps;
-  if (steps_allowed_ > 0) --steps_allowed_;
-  if (steps_allowed_ == 0) changed_.notify_all();
+  if (steps_allowed_ > 0 && --steps_allowed_ == 0) changed_.notify_all();
   // Without a limit of the pace, simulated time says nothing about a controller.
   const bool has_pace = settings_.follows_clock || real_time_factor_ > 0;
   if (settings_.lockstep || !has_pace || !command_watch_.check(report_.time)) return;

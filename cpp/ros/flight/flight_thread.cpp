@@ -54,12 +54,14 @@ void FlightThread::end() {
 }
 
 void FlightThread::command(const CommandQueue::Command& command) {
-  const Lock lock(mutex_);
+  Lock lock(mutex_);
   commands_.take(command);
-  if (settings_.lockstep) {
-    changed_.notify_all();
-  } else {
+  if (!settings_.lockstep) {
     command_watch_.arrived(report_.time);
+  } else if (may_step_with_command()) {
+    step_with_command(lock);
+  } else {
+    changed_.notify_all();
   }
 }
 

@@ -30,12 +30,15 @@ struct FlightSettings {
   std::string answered = OdometryTopic::name;  ///< topic of the simulation that commands answer
 };
 
-/// Receives the events of a flight. The flight's thread makes all calls without holding a lock.
+/// Receives the events of a flight. The thread that makes the steps makes all calls without holding
+/// a lock.
 class FlightListener {
  public:
   virtual ~FlightListener() = default;
   /// Called before a step: publishes received messages for the plugins.
   virtual void feed(Simulation& simulation) = 0;
+  /// Whether feed() waits for another thread.
+  virtual bool waits_to_feed() const = 0;
   /// Called after a step or, with `jumped`, after a reset or a new state.
   virtual void observe(const Simulation& simulation, bool jumped) = 0;
   /// Called while the simulation waits at its start or after a jump for a node that can answer. It
@@ -67,8 +70,8 @@ struct FlightReport {
   std::string failure;             ///< reason of the end; "" during the flight
 };
 
-/// Runs a simulation in its own thread. Every public member may be called from any thread; only the
-/// flight's thread accesses the simulation.
+/// Runs a simulation in its own thread. Every public member may be called from any thread. Only the
+/// flight's thread accesses the simulation, except that it lends it to a command that it waits for.
 class FlightThread {
  public:
   FlightThread(Simulation& simulation, const FlightSettings& settings, FlightListener& listener);
@@ -116,6 +119,8 @@ class FlightThread {
   void wait_for_command(Lock& lock);
   void observe_jump();
   void run_changes(Lock& lock);
+  bool may_step_with_command() const;
+  void step_with_command(Lock& lock);
   void take_step();
   std::string try_step();
   void fail(const std::string& why);
@@ -144,6 +149,9 @@ class FlightThread {
   std::deque<std::packaged_task<void()>> changes_;
   CommandQueue commands_;
   CommandWatch command_watch_;
+  /// Whether the flight's thread waits for a command, which may make the next steps.
+  bool lends_ = false;
+  bool is_lent_ = false;        ///< a command makes steps
   bool jump_observed_ = false;  ///< the last start or jump has been observed
   /// Time at which a commanding node was last connected, or of the last reminder.
   std::optional<Pacer::Clock::time_point> reminded_;

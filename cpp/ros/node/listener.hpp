@@ -28,6 +28,7 @@ class Listener final : public FlightListener {
     inlets_.take(simulation);
     wrenches_.act(simulation);
   }
+  bool waits_to_feed() const override { return inlets_.waits(); }
   void observe(const Simulation& simulation, bool jumped) override;
   void show(const Simulation& simulation) override { broadcast_.show(simulation); }
   void remind(const Simulation& simulation) override;

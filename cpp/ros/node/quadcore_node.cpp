@@ -254,7 +254,7 @@ class Node {
   FlightThread flight_{simulation_, flight_settings(), listener_};
   std::unique_ptr<ClockLeader> leader_ =
       clock_ ? std::make_unique<ClockLeader>(nh_, flight_, clock_) : nullptr;
-  CommandSubscriber commands_{nh_, topics_, settings_.flight.lockstep, flight_};
+  CommandSubscriber commands_{nh_, topics_, flight_};
   ParameterWatch parameters_{flight_, !clock_, initial_parameters_};
   Reconfigure reconfigure_{adjustables()};
   Diagnostics diagnostics_{nh_, flight_.report(), join_names(topics_)};

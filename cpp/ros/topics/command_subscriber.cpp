@@ -5,12 +5,11 @@
 
 #include <algorithm>
 
+#include "messages.hpp"
 #include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {
-
-constexpr std::uint32_t queue_of_original = 1000;
 
 const std::vector<double>& get_speeds(const std_msgs::Float64MultiArray& message) {
   return message.data;
@@ -20,31 +19,33 @@ const std::vector<double>& get_speeds(const mav_msgs::Actuators& message) {
 }
 
 template <class Message, class Take>
-ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue,
+ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& topic, CallerQueue& queue,
                           const Take& take) {
-  const boost::function<void(const ros::MessageEvent<Message const>&)> callback =
-      [take](const ros::MessageEvent<Message const>& event) {
-        take(event.getPublisherName(), get_speeds(*event.getConstMessage()));
-      };
+  using Event = ros::MessageEvent<Message const>;
+  const boost::function<void(const Event&)> callback = [take](const Event& event) {
+    take(event.getPublisherName(), get_speeds(*event.getConstMessage()));
+  };
+  ros::SubscribeOptions options;
+  options.template initByFullCallbackType<const Event&>(topic, queue_size, callback);
+  options.callback_queue = &queue;
   // Without delay, so that a command does not wait for the next one.
-  return nh.subscribe<Message>(topic, queue, callback, ros::VoidConstPtr(),
-                               ros::TransportHints().tcpNoDelay());
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  return nh.subscribe(options);
 }
 
 }  // namespace
 
 CommandSubscriber::CommandSubscriber(ros::NodeHandle& nh, const std::vector<CommandTopic>& topics,
-                                     bool lockstep, FlightThread& flight)
+                                     FlightThread& flight)
     : flight_(flight), topics_(topics) {
-  // In lockstep, roscpp's queue, which drops messages without a warning, must not be shorter.
-  const std::uint32_t queue = lockstep ? CommandQueue::max_waiting : queue_of_original;
   for (const CommandTopic& topic : topics_) {
     const auto take_from = [this, &topic](const std::string& who, const std::vector<double>& w) {
       take(topic, who, w);
     };
     subscribers_.push_back(
-        topic.actuators ? subscribe<mav_msgs::Actuators>(nh, topic.name, queue, take_from)
-                        : subscribe<std_msgs::Float64MultiArray>(nh, topic.name, queue, take_from));
+        topic.actuators
+            ? subscribe<mav_msgs::Actuators>(nh, topic.name, queue_, take_from)
+            : subscribe<std_msgs::Float64MultiArray>(nh, topic.name, queue_, take_from));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "caller_queue.hpp"
 #include "command_topics.hpp"
 #include "diagnostics.hpp"
 #include "flight_thread.hpp"
@@ -13,11 +14,11 @@
 
 namespace quadcore::node {
 
-/// Receives commands from topics, in the callback thread. It counts and reports rejected commands,
-/// and warns if two nodes send commands.
+/// Receives commands from topics, in the thread that reads them. It counts and reports rejected
+/// commands, and warns if two nodes send commands.
 class CommandSubscriber {
  public:
-  CommandSubscriber(ros::NodeHandle& nh, const std::vector<CommandTopic>& topics, bool lockstep,
+  CommandSubscriber(ros::NodeHandle& nh, const std::vector<CommandTopic>& topics,
                     FlightThread& flight);
   Refusals refusals() const;
 
@@ -27,11 +28,12 @@ class CommandSubscriber {
 
   FlightThread& flight_;
   const std::vector<CommandTopic> topics_;
-  std::vector<ros::Subscriber> subscribers_;
   mutable std::mutex mutex_;
   Refusals refusals_;
   std::string commander_;  ///< sender of the last command
   WarningLimiter limiter_;
+  CallerQueue queue_;
+  std::vector<ros::Subscriber> subscribers_;  ///< last, because they use the other members
 };
 
 }  // namespace quadcore::node

@@ -30,15 +30,22 @@ TopicInlets::TopicInlets(ros::NodeHandle nh, const Simulation& simulation,
   poll_ = ros::PollManager::instance()->addPollThreadListener([this] {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++turns_;
+    reader_ = std::this_thread::get_id();
     turned_.notify_all();
   });
 }
 
 TopicInlets::~TopicInlets() { ros::PollManager::instance()->removePollThreadListener(poll_); }
 
+bool TopicInlets::waits() const {
+  return lockstep_ &&
+         std::any_of(subscribers_.begin(), subscribers_.end(),
+                     [](const ros::Subscriber& s) { return s.getNumPublishers() > 0; });
+}
+
 void TopicInlets::take(Simulation& simulation) {
   if (subscribers_.empty()) return;
-  if (lockstep_) wait_for_sockets();
+  if (waits()) wait_for_sockets();
   simulation_ = &simulation;
   queue_.callAvailable();
 }
@@ -47,6 +54,7 @@ void TopicInlets::take(Simulation& simulation) {
 /// socket. After the end of a turn that begins now, it has read that message.
 void TopicInlets::wait_for_sockets() {
   std::unique_lock<std::mutex> lock(mutex_);
+  if (std::this_thread::get_id() == reader_) return;  // the publisher has just connected
   const std::int64_t next = turns_ + 1;
   while (turns_ <= next && ros::ok()) {
     ros::PollManager::instance()->getPollSet().signal();

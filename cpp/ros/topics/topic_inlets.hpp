@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "quadcore/simulation.hpp"
@@ -28,6 +29,8 @@ class TopicInlets {
   TopicInlets(const TopicInlets&) = delete;
   TopicInlets& operator=(const TopicInlets&) = delete;
 
+  /// Whether take() waits for roscpp to read its sockets: if a publisher is connected in lockstep.
+  bool waits() const;
   /// Publishes received messages in the simulation; call before a step, in the flight's thread.
   void take(Simulation& simulation);
 
@@ -43,6 +46,7 @@ class TopicInlets {
   std::mutex mutex_;
   std::condition_variable turned_;
   std::int64_t turns_ = 0;  ///< turns in which roscpp reads all sockets
+  std::thread::id reader_;  ///< roscpp's thread that reads them
   boost::signals2::connection poll_;
 };
 
