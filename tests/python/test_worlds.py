@@ -7,6 +7,7 @@ import math
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import quadcore as qc
@@ -60,8 +61,9 @@ def walled(tmp_path):
     return str(path)
 
 
-def test_a_course_is_evaluated_with_clearance_and_collisions():
-    evaluation = qc.evaluate("geometric", "eight", world="slalom", duration=6, engine="ode")
+@pytest.mark.parametrize("engine", ["ode", "eigen"])
+def test_a_course_is_evaluated_with_clearance_and_collisions(engine):
+    evaluation = qc.evaluate("geometric", "eight", world="slalom", duration=6, engine=engine)
     (row,) = evaluation.table
     # The path is 0.65 m or more from the axes of the poles, whose radius is 0.1 m.
     assert 0.1 < row["clearance"] < 0.55
@@ -69,6 +71,18 @@ def test_a_course_is_evaluated_with_clearance_and_collisions():
     (row,) = qc.evaluate("geometric", "hover", duration=0.1, engine="eigen").table
     assert math.isnan(row["clearance"])
     assert math.isnan(row["collisions"])
+
+
+def test_engines_agree_on_the_time_of_an_impact_at_a_wall(walled):
+    impacts = []
+    for engine in ("ode", "eigen"):
+        simulation = qc.Simulation("quadrotor", engine=engine, world=walled)
+        log = simulation.run(2.0, controller="geometric", reference="ramp:time=0.1")
+        jumps = np.abs(np.diff(log.linear_velocity[:, 0]))
+        impacts.append(log.time[1 + np.argmax(jumps > 0.05)])
+        assert log.position[:, 0].max() < 1.4  # the near side of the wall
+    assert impacts[0] > 0.5
+    assert impacts[0] == pytest.approx(impacts[1], abs=0.01)
 
 
 def test_a_run_tells_where_it_collides(walled, capsys):
