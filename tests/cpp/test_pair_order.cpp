@@ -46,13 +46,22 @@ TEST_CASE("models whose boxes do not touch are no pair") {
   CHECK(find(pairs, cube(1), 3) == Order{{2, true}});
 }
 
-TEST_CASE("of two models of a level that move, the newer one finds the other") {
+TEST_CASE("of two models of a level, the newer one finds the other once they move") {
   PairOrder pairs({cube(0.9)});
   std::vector<std::array<std::size_t, 2>> found;
-  for (const ModelPair& pair : pairs.find({{cube(0.8)}, {cube(0.7)}, {cube(0.6), true}})) {
+  for (const ModelPair& pair : pairs.find({{cube(0.8)}, {cube(0.7)}, {cube(0.6), 1}})) {
     found.push_back({pair.first, pair.second});
   }
-  // Those that stand still or sleep are the first of the list.
+  // Those that stand still are the first of the list, then those that have not moved for longest.
   CHECK(found ==
         std::vector<std::array<std::size_t, 2>>{{0, 1}, {0, 2}, {0, 3}, {3, 1}, {3, 2}, {2, 1}});
+}
+
+TEST_CASE("of two models of a level, the older one finds the other before they move") {
+  PairOrder pairs({});
+  std::vector<std::array<std::size_t, 2>> found;
+  for (const ModelPair& pair : pairs.find({{cube(0.8), dInfinity}, {cube(0.7), dInfinity}})) {
+    found.push_back({pair.first, pair.second});
+  }
+  CHECK(found == std::vector<std::array<std::size_t, 2>>{{0, 1}});
 }

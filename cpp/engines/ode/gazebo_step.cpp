@@ -29,6 +29,7 @@ GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hi
                        std::size_t vehicle)
     : warm_start(hinges.size()),
       asleep(bodies.size()),
+      unmoved(bodies.size(), dInfinity),
       ode_bodies_(bodies),
       constraints_(bodies, std::move(hinges), order, options.rows),
       options_(options),
@@ -293,6 +294,7 @@ void GazeboStep::damp(const BodyRange& range) {
 void GazeboStep::move(double dt, const BodyRange& range) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const dBodyID ode = ode_bodies_[i];
+    unmoved[i] = asleep[i] ? unmoved[i] + 1 : 0;
     if (asleep[i]) {
       forget_forces(ode);
       continue;

@@ -61,6 +61,7 @@ class GazeboStep {
 
   std::vector<WarmStart> warm_start;
   std::vector<char> asleep;  ///< whether each body sleeps; it does not move until another wakes it
+  std::vector<double> unmoved;  ///< of these steps, those since each body moved; first infinite
 
  private:
   using Vector6 = ConstraintRow::Vector6;

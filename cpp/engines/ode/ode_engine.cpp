@@ -238,7 +238,7 @@ void OdeEngine::take_motion() {
 void OdeEngine::step_in_ode(double dt, bool near) {
   push(dt);
   static const std::vector<Contact> none;
-  const std::vector<Contact>& contacts = contact_ ? contact_->find(gazebo_step_->asleep) : none;
+  const std::vector<Contact>& contacts = contact_ ? contact_->find(gazebo_step_->unmoved) : none;
   gazebo_step_->reserve(contacts.size());
   free_->push();
   put_to_sleep(contacts, dt);
@@ -262,7 +262,7 @@ void OdeEngine::step_free(double dt) {
   const std::vector<char>& asleep = gazebo_step_->asleep;
   const auto first = asleep.begin() + static_cast<std::ptrdiff_t>(vehicle_->bodies().size());
   if (std::all_of(first, asleep.end(), [](char sleeps) { return sleeps != 0; })) return;
-  const std::vector<Contact>& contacts = contact_->find_free(asleep);
+  const std::vector<Contact>& contacts = contact_->find_free(gazebo_step_->unmoved);
   gazebo_step_->reserve(contacts.size());
   free_->push();
   put_to_sleep(contacts, dt);
@@ -363,7 +363,7 @@ void OdeEngine::set_state(const VehicleState& state) {
 std::size_t OdeEngine::saved_size() const {
   return vehicle_->bodies().size() * (pose_size + velocity_size) +
          gazebo_step_->warm_start.size() * 2 * rows_per_hinge + free_->saved_size() +
-         free_->bodies().size() + 1;
+         2 * free_->bodies().size() + 1;
 }
 
 std::vector<double> OdeEngine::save() const {
@@ -380,9 +380,10 @@ std::vector<double> OdeEngine::save() const {
     to = std::copy(start.velocity.begin(), start.velocity.end(), to);
   }
   to = free_->save(to);
-  const std::vector<char>& asleep = gazebo_step_->asleep;
-  to = std::copy(asleep.begin() + static_cast<std::ptrdiff_t>(vehicle_->bodies().size()),
-                 asleep.end(), to);
+  for (std::size_t i = vehicle_->bodies().size(); i < all_bodies_.size(); ++i) {
+    *to++ = gazebo_step_->asleep[i];
+    *to++ = gazebo_step_->unmoved[i];
+  }
   *to = steps_since_contact_;
   return saved;
 }
@@ -408,6 +409,7 @@ void OdeEngine::restore(const std::vector<double>& saved) {
   from = free_->restore(from);
   for (std::size_t i = vehicle_->bodies().size(); i < all_bodies_.size(); ++i) {
     gazebo_step_->asleep[i] = *from++ != 0;
+    gazebo_step_->unmoved[i] = *from++;
   }
   steps_since_contact_ =
       *from >= 0 && *from < steps_beside_contact ? static_cast<int>(*from) : steps_beside_contact;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace quadcore {
 namespace {
@@ -49,16 +50,25 @@ PairOrder::PairOrder(const std::vector<Bounds>& boxes) : still_(boxes.size()) {
   }
 }
 
-/// Models that moved come to the front of the space's list, the newest first, and the space goes
-/// through the list from its end.
+/// Each new model is put to the front of the space's list. So is each that moves in a step, the
+/// newest first. The space goes through the list from its end.
+void PairOrder::sort_moving(const std::vector<MovingModel>& moving) {
+  ranked_.resize(moving.size());
+  std::iota(ranked_.begin(), ranked_.end(), 0);
+  std::sort(ranked_.begin(), ranked_.end(), [&moving](int one, int other) {
+    const double unmoved = moving[static_cast<std::size_t>(one)].unmoved;
+    const double of_other = moving[static_cast<std::size_t>(other)].unmoved;
+    if (unmoved != of_other) return unmoved > of_other;
+    return std::isinf(unmoved) ? one < other : one > other;
+  });
+}
+
 const std::vector<ModelPair>& PairOrder::find(const std::vector<MovingModel>& moving) {
   models_.resize(still_);
-  const int still = static_cast<int>(still_), count = static_cast<int>(moving.size());
-  for (int i = 0; i < count; ++i) {
-    const MovingModel& model = moving[static_cast<std::size_t>(i)];
-    const int rank = model.is_asleep ? still + i : still + 2 * count - i;
-    models_.push_back({model.box, level_of(model.box), rank});
-  }
+  for (const MovingModel& model : moving) models_.push_back({model.box, level_of(model.box), 0});
+  sort_moving(moving);
+  int rank = static_cast<int>(still_);
+  for (const int i : ranked_) models_[still_ + static_cast<std::size_t>(i)].rank = rank++;
   found_.clear();
   pairs_.clear();
   for (std::size_t i = still_; i < models_.size(); ++i) {

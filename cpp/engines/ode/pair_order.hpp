@@ -23,7 +23,7 @@ struct ModelPair {
 /// A model that moves.
 struct MovingModel {
   Bounds box;
-  bool is_asleep = false;
+  double unmoved = 0;  ///< steps since it moved; infinite before its first
 };
 
 /// The order in which the hash space of Gazebo 11's ODE finds the pairs of models of which at least
@@ -38,6 +38,8 @@ class PairOrder {
   const std::vector<ModelPair>& find(const std::vector<MovingModel>& moving);
 
  private:
+  /// Put the indices of moving models into the order of the space, from the end of its list.
+  void sort_moving(const std::vector<MovingModel>& moving);
   struct Sized {
     Bounds box;
     int level;  ///< power of 2 that its longest side does not exceed [m]
@@ -51,6 +53,7 @@ class PairOrder {
 
   std::vector<Sized> models_;  ///< those that stand still, then those that move
   std::size_t still_;          ///< number of the former
+  std::vector<int> ranked_;    ///< indices of those that move, by rank
   std::vector<Found> found_;
   std::vector<ModelPair> pairs_;
 };

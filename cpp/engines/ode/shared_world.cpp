@@ -80,7 +80,7 @@ void OdeSharedWorld::step(double dt, const std::vector<TimedForces>& forces) {
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
       if (close_[i]) vehicles_[i].engine->settle();
     }
-    contacts = &contact_->find_among(close_, step_->asleep);
+    contacts = &contact_->find_among(close_, step_->unmoved);
     find_touching(*contacts);
   }
   for (current_ = 0; current_ < vehicles_.size(); ++current_) {
@@ -152,15 +152,17 @@ bool OdeSharedWorld::are_free_bodies_asleep() const {
 }
 
 std::size_t OdeSharedWorld::saved_size() const {
-  return free_.saved_size() + free_.bodies().size() +
+  return free_.saved_size() + 2 * free_.bodies().size() +
          (step_->warm_start.size() - first_joint_) * 2 * rows_per_hinge;
 }
 
 std::vector<double> OdeSharedWorld::save() const {
   std::vector<double> saved(saved_size());
   double* to = free_.save(saved.data());
-  to = std::copy(step_->asleep.begin() + static_cast<std::ptrdiff_t>(first_free_),
-                 step_->asleep.end(), to);
+  for (std::size_t i = first_free_; i < bodies_.size(); ++i) {
+    *to++ = step_->asleep[i];
+    *to++ = step_->unmoved[i];
+  }
   for (std::size_t i = first_joint_; i < step_->warm_start.size(); ++i) {
     const GazeboStep::WarmStart& start = step_->warm_start[i];
     to = std::copy(start.pose.begin(), start.pose.end(), to);
@@ -175,7 +177,10 @@ void OdeSharedWorld::restore(const std::vector<double>& saved) {
         "snapshot: it was taken in another world or engine. Restore a snapshot of this fleet.");
   }
   const double* from = free_.restore(saved.data());
-  for (std::size_t i = first_free_; i < bodies_.size(); ++i) step_->asleep[i] = *from++ != 0;
+  for (std::size_t i = first_free_; i < bodies_.size(); ++i) {
+    step_->asleep[i] = *from++ != 0;
+    step_->unmoved[i] = *from++;
+  }
   for (std::size_t i = first_joint_; i < step_->warm_start.size(); ++i) {
     GazeboStep::WarmStart& start = step_->warm_start[i];
     std::copy_n(from, rows_per_hinge, start.pose.begin());

@@ -202,11 +202,11 @@ void WorldContact::add_shape(const Collision& collision, const Link& link, std::
   models_.back().push_back({std::move(geom), static_cast<int>(body), surface});
 }
 
-const std::vector<Contact>& WorldContact::find(const std::vector<char>& asleep) {
+const std::vector<Contact>& WorldContact::find(const std::vector<double>& unmoved) {
   contacts_.clear();
-  find_free_bounds(asleep);
+  find_free_bounds(unmoved);
   if (vehicle().empty()) return find_pairs();
-  moving_.push_back(find_bounds(vehicle(), asleep));
+  moving_.push_back(find_vehicle(vehicle()));
   if (balls_.empty() && !is_obstacle_ahead(0)) {
     if (has_ground_) collide({models_.size() - 1, 0});
     return contacts_;
@@ -214,29 +214,40 @@ const std::vector<Contact>& WorldContact::find(const std::vector<char>& asleep) 
   return find_pairs();
 }
 
-const std::vector<Contact>& WorldContact::find_free(const std::vector<char>& asleep) {
+const std::vector<Contact>& WorldContact::find_free(const std::vector<double>& unmoved) {
   contacts_.clear();
-  find_free_bounds(asleep);
+  find_free_bounds(unmoved);
   return find_pairs();
 }
 
 const std::vector<Contact>& WorldContact::find_among(const std::vector<char>& vehicles,
-                                                     const std::vector<char>& asleep) {
+                                                     const std::vector<double>& unmoved) {
   contacts_.clear();
-  find_free_bounds(asleep);
+  find_free_bounds(unmoved);
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     Shapes& shapes = models_[first_vehicle_ + i];
     const bool is_there = vehicles[i] && !shapes.empty();
-    moving_.push_back(is_there ? find_bounds(shapes, asleep) : MovingModel{nowhere});
+    moving_.push_back(is_there ? find_vehicle(shapes) : MovingModel{nowhere});
   }
   return find_pairs();
 }
 
-void WorldContact::find_free_bounds(const std::vector<char>& asleep) {
+void WorldContact::find_free_bounds(const std::vector<double>& unmoved) {
   moving_.clear();
   for (std::size_t i = still_; i < first_vehicle_; ++i) {
-    moving_.push_back(find_bounds(models_[i], asleep));
+    MovingModel free = {find_bounds(models_[i]), dInfinity};
+    for (const Shape& shape : models_[i]) {
+      free.unmoved = std::min(free.unmoved, unmoved[static_cast<std::size_t>(shape.body)]);
+    }
+    moving_.push_back(free);
   }
+}
+
+/// A vehicle has moved if a free body has.
+MovingModel WorldContact::find_vehicle(Shapes& shapes) const {
+  const auto is_new = [](const MovingModel& free) { return std::isinf(free.unmoved); };
+  const bool is_first = !moving_.empty() && std::all_of(moving_.begin(), moving_.end(), is_new);
+  return {find_bounds(shapes), is_first ? dInfinity : 0};
 }
 
 const std::vector<Contact>& WorldContact::find_pairs() {
@@ -249,15 +260,10 @@ const std::vector<Contact>& WorldContact::find_pairs() {
 }
 
 /// Update the bounding boxes of the shapes of a model, and return that of all.
-MovingModel WorldContact::find_bounds(Shapes& shapes, const std::vector<char>& asleep) const {
-  MovingModel all;
-  all.is_asleep = true;
-  for (Shape& shape : shapes) {
-    shape.box = bounds_of(shape.geom.get());
-    all.is_asleep &= asleep[static_cast<std::size_t>(shape.body)] != 0;
-  }
-  all.box = shapes.front().box;
-  for (const Shape& shape : shapes) extend(all.box, shape.box);
+Bounds WorldContact::find_bounds(Shapes& shapes) const {
+  for (Shape& shape : shapes) shape.box = bounds_of(shape.geom.get());
+  Bounds all = shapes.front().box;
+  for (const Shape& shape : shapes) extend(all, shape.box);
   return all;
 }
 

@@ -43,14 +43,15 @@ class WorldContact {
   bool has_ground() const { return has_ground_; }
 
   /// Return the contacts of the present poses in a world with one vehicle.
-  /// \param asleep  whether each body sleeps
-  const std::vector<Contact>& find(const std::vector<char>& asleep);
+  /// \param unmoved  steps since each free body moved, behind those of the vehicles, which move in
+  ///   every step; infinite before the first step
+  const std::vector<Contact>& find(const std::vector<double>& unmoved);
   /// Return those without the vehicle.
-  const std::vector<Contact>& find_free(const std::vector<char>& asleep);
+  const std::vector<Contact>& find_free(const std::vector<double>& unmoved);
   /// Return those of the free bodies and some vehicles.
   /// \param vehicles  whether each vehicle takes part
   const std::vector<Contact>& find_among(const std::vector<char>& vehicles,
-                                         const std::vector<char>& asleep);
+                                         const std::vector<double>& unmoved);
 
   /// Return whether a shape of the only vehicle may be in the ground or an obstacle within `time`
   /// [s] at the present velocities. Shapes of rotors are treated as turning only with the frame.
@@ -84,8 +85,9 @@ class WorldContact {
   void add_obstacle(const Obstacle& obstacle);
   void add_free_bodies(const World& world, std::size_t first);
   void add_shape(const Collision& collision, const Link& link, std::size_t body);
-  MovingModel find_bounds(Shapes& shapes, const std::vector<char>& asleep) const;
-  void find_free_bounds(const std::vector<char>& asleep);
+  Bounds find_bounds(Shapes& shapes) const;
+  void find_free_bounds(const std::vector<double>& unmoved);
+  MovingModel find_vehicle(Shapes& shapes) const;
   const std::vector<Contact>& find_pairs();
   void collide(const ModelPair& pair);
   void meet(const Shape& one, const Shape& other);
@@ -110,7 +112,7 @@ class WorldContact {
   double reach_ = 0;  ///< reach of all shapes from the frame's centre of mass [m]
   ClearBall clear_ball_;
   std::unique_ptr<PairOrder> order_;
-  std::vector<MovingModel> moving_;
+  std::vector<MovingModel> moving_;  ///< free models; vehicles
   std::vector<std::pair<const Shape*, const Shape*>> of_meshes_;
   std::vector<dContactGeom> touching_;
   std::vector<Contact> contacts_;
