@@ -16,7 +16,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const Cl
       clock_publisher_(clock),
       path_(nh, frames.world),
       gazebo_states_(gazebo_states) {
-  joint_states_publisher_ = {nh, joint_states_topic, 100};
+  joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>(joint_states_topic, 100, kept);
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
   if (odometry_topic_.exists()) {
@@ -36,12 +36,12 @@ void Broadcast::advertise_odometry(ros::NodeHandle& nh, const Frames& frames,
   const Model& model = simulation.model();
   const bool of_plugin = simulation.topics().find(truth_topic) >= 0;  // as for RotorS' vehicles
   odometry_publisher_ = {nh, OdometryTopic::name, 1000};
-  if (!of_plugin) truth_publisher_ = {nh, truth_topic, 1000};
+  if (!of_plugin) truth_publisher_ = nh.advertise<nav_msgs::Odometry>(truth_topic, 1000, kept);
   for (nav_msgs::Odometry* const message : {&odometry_, &truth_}) {
     set_frames(*message, {frames.world, frames.vehicle});
   }
   if (!odometry_topic_.publishes_tf()) return;
-  tf_publisher_ = {nh, "/tf", 100};
+  tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
   transforms_.transforms.push_back(make_identity_transform(frames.world, frames.vehicle));
   if (rotor_tf) add_rotor_frames(model, frames);
 }

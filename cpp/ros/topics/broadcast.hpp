@@ -59,10 +59,10 @@ class Broadcast {
 
   ClockPublisher clock_publisher_;
   OfferingPublisher<nav_msgs::Odometry> odometry_publisher_;
-  LatchedPublisher<nav_msgs::Odometry> truth_publisher_;
-  LatchedPublisher<tf2_msgs::TFMessage> tf_publisher_;
+  ros::Publisher truth_publisher_;
+  ros::Publisher tf_publisher_;
   ros::Publisher static_tf_publisher_;
-  LatchedPublisher<sensor_msgs::JointState> joint_states_publisher_;
+  ros::Publisher joint_states_publisher_;
   PathTopic path_;
   GazeboStates& gazebo_states_;
   std::optional<TopicBroadcast> others_;
