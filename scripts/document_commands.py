@@ -109,7 +109,7 @@ EXAMPLES = {
     ),
     "predict": Example(
         "quadcore predict crazyflie --log flight.csv --out out/prediction",
-        "The log is that of the same vehicle, so that only the differences of steps remain. "
+        "Here the log comes from the same model, so only the errors of the time steps remain. "
         "See [fit a model](../fit.md#recordings-of-real-flights).",
         before="QUADCORE_SHORT=no quadcore run crazyflie --controller geometric --reference eight "
         "--engine eigen \\\n  --duration 12 --log-every 10 --log flight.csv --quiet",

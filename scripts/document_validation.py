@@ -120,9 +120,8 @@ LEFT_OUT = {
         "torque of rotors that spin up, $`-\\sum I_R\\dot\\omega_i\\,a_i`$",
         "in (2.11), dropped after (2.13)",
     ),
-    "rotors that a turning frame leaves behind": (
-        "rotors that a turning frame leaves behind, "
-        "$`\\dot\\omega_i = \\dots - a_i\\cdot\\dot\\nu`$",
+    "rotors that do not turn with the frame": (
+        "rotors that do not turn with the frame, $`\\dot\\omega_i = \\dots - a_i\\cdot\\dot\\nu`$",
         "none",
     ),
 }

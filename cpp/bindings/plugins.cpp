@@ -138,7 +138,7 @@ folder : str or path
 Raises
 ------
 InputError
-    It is no folder, or cannot be searched.)");
+    If it is not a folder, or cannot be searched.)");
   m.def(
       "plugin_folders",
       [] {

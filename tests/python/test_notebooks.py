@@ -8,8 +8,10 @@ import warnings
 from pathlib import Path
 
 import pytest
+from printed import check_printed
 
-NOTEBOOKS = sorted((Path(__file__).resolve().parents[2] / "notebooks").glob("*.py"))
+ROOT = Path(__file__).resolve().parents[2]
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.py"))
 
 
 def cells(notebook):
@@ -30,7 +32,7 @@ def run_cell(code, names):
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_runs_and_shows_its_results(notebook, monkeypatch, tmp_path):
+def test_a_notebook_runs_and_shows_its_results(notebook, monkeypatch, tmp_path, capsys):
     monkeypatch.setenv("MPLBACKEND", "agg")
     monkeypatch.chdir(tmp_path)
     names = {"__name__": "__main__"}
@@ -39,6 +41,10 @@ def test_a_notebook_runs_and_shows_its_results(notebook, monkeypatch, tmp_path):
         results = [run_cell(code, names) for code in cells(notebook)]
     assert len(results) > 3
     assert results[-1]
+    page = (ROOT / "docs" / "notebooks.md").read_text()
+    _, found, after = page.partition(f"`python notebooks/{notebook.name}`")
+    if found:
+        check_printed(after.split("```")[1].partition("\n")[2], capsys.readouterr().out, 1e-3)
     assert not [result for result in results if " at 0x" in result and "matplotlib" not in result]
 
 

@@ -11,6 +11,7 @@ from test_player import content_of
 
 import quadcore as qc
 from quadcore.cli import main
+from quadcore.studies.fit.output import describe_residual
 
 SPEEDS = "t,w1,w2,w3,w4\n0,480,-480,480,-480\n0.5,490,-470,490,-470\n1,470,-480,470,-480\n"
 
@@ -42,6 +43,19 @@ def test_the_page_of_a_tuning_flies_the_gains_that_it_lists():
     assert errors[1] == pytest.approx(held_out, rel=1e-3) and errors[1] < errors[0]
     assert f"{held_out:.4g}" in page
     assert main(["play", "out", "-o", "page.html", "--quiet"]) == 0
+
+
+def test_the_verdict_of_a_fit_states_whether_the_residual_is_smaller():
+    better = describe_residual("position", "m", (0.02, 0.01, 0.015))
+    assert better == (
+        "The fit reduces the RMS residual of the position: 0.02 m with the start values, "
+        "0.01 m with the fitted values, 0.015 m in the held-out parts"
+    )
+    worse = describe_residual("position", "m", (0.01, 0.02, float("nan")))
+    assert worse == (
+        "The fit does not reduce the RMS residual of the position: 0.01 m with the start values, "
+        "0.02 m with the fitted values"
+    )
 
 
 def test_the_page_of_a_fit_shows_that_the_fitted_model_follows_the_measured_flight():

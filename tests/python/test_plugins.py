@@ -13,8 +13,10 @@ import pytest
 from builds import build, build_once
 from faults import MODEL, refusal
 from flights import ENGINES
+from printed import check_printed
 
 import quadcore as qc
+from quadcore.model.description import load_description
 
 ROOT = Path(__file__).resolve().parents[2]
 SIDE_FORCE = '<plugin name="push" filename="{}"><sideForce>{}</sideForce></plugin>'
@@ -116,6 +118,11 @@ def test_the_cpp_example_flies_as_its_python_twin(tmp_path):
     ]
     assert flown[0] == flown[1]
     assert flown[0].startswith("t = 4.00 s, height 9.9")
+    (tmp_path / "quadrotor.urdf").write_text(load_description("quadrotor", {}).text)
+    command = [program, tmp_path / "quadrotor.urdf"]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    page = (ROOT / "docs" / "cpp.md").read_text()
+    check_printed(page.split("$ ./fly quadrotor.urdf\n")[1].split("```")[0], printed, 1e-9)
     wrong = subprocess.run([program, twin], capture_output=True, text=True, check=False)
     assert wrong.returncode == 2
     assert wrong.stderr.startswith(f"error: {twin}:") and wrong.stderr.count("\n") == 1

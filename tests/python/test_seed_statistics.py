@@ -84,7 +84,7 @@ def test_seeds_without_noise_have_no_intervals_and_the_result_says_so():
         assert group["is_random"] is False
         assert np.isnan([group["low_rms_position"], group["difference_low_rms_position"]]).all()
     assert describe_seeds(found.groups) == [
-        "Seeds change nothing here: nothing is random. There are no intervals."
+        "Nothing is random in these flights. Seeds have no effect, and there are no intervals."
     ]
     found = evaluate("pd", "circle", seeds=3, vary={"odometry.positionNoise": [0, 1e-3]})
     (note,) = describe_seeds(found.groups)

@@ -31,8 +31,8 @@ def register(commands: Any) -> None:
         "what",
         metavar="ACTION",
         choices=_ACTIONS,
-        help="list: the bridges; check: tilt a vehicle on a bench, turn each motor, and name what "
-        "is wrong; replay: repeat a recorded flight without the program",
+        help="list: the bridges; check: tilt a vehicle on a bench, turn each motor, and report "
+        "faults; replay: repeat a recorded flight without the program",
     )
     parser.add_argument("file", metavar="FILE", nargs="?", help="stack file to check, or session")
     model = find_group(parser, VEHICLE).add_argument(

@@ -41,7 +41,7 @@ def register(commands: Any) -> None:
     )
     complete_from(version, VERSIONS)
     options.add_controllers(
-        parser, "controllers (default: all built-in ones but those of firmwares)"
+        parser, "controllers (default: all built-in ones except those of firmware)"
     )
     for name, known in (("vehicle", list(latest.vehicles)), ("category", latest.categories)):
         chosen = find_group(parser, STUDY).add_argument(

@@ -11,7 +11,7 @@ from ..support.output_files import remove_leftovers
 from . import options
 from .parser import add_command
 
-_FORMATS = ".csv, .mat, .bag, or a ROS 2 bag .ros2"
+_FORMATS = ".csv, .mat, .bag, a ROS 2 bag .ros2"
 
 
 def register(commands: Any) -> None:
@@ -19,7 +19,7 @@ def register(commands: Any) -> None:
     parser = add_command(
         commands,
         "convert",
-        "Convert a log to another format; the numbers of quadcore's own logs keep every bit.",
+        "Convert a log to another format; the numbers of quadcore's own logs stay bit-identical.",
         convert_log,
         """
         quadcore convert out/spiral/log.csv spiral.mat
@@ -35,7 +35,7 @@ def register(commands: Any) -> None:
         "real flight: ULog, Crazyflie micro-SD, blackbox, CSV, bag",
     )
     options.add_mapping(parser)
-    parser.add_argument("target", metavar="B", type=Path, help=f"log to write: {_FORMATS}")
+    parser.add_argument("target", metavar="B", type=Path, help=f"log to write: one of {_FORMATS}")
 
 
 def convert_log(arguments: argparse.Namespace) -> None:

@@ -63,7 +63,7 @@ def register(commands: Any) -> None:
     parser = add_command(
         commands,
         "doctor",
-        "Check the installation, and print the remedy for everything that is wrong or absent.",
+        "Check the installation, and print the remedy for each problem.",
         check_installation,
         "quadcore doctor",
     )

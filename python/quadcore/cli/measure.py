@@ -56,8 +56,8 @@ def register(commands: Any) -> None:
         metavar="S|find,...",
         type=_read_alignments,
         default=[0.0],
-        help="time in the log at which the reference begins, in seconds; find searches the minimum "
-        "RMS tracking error; one for all logs, or one for each (default: 0)",
+        help="time in the log at which the reference begins, in seconds, for all logs or for each; "
+        "find: the time with the minimum RMS tracking error (default: 0)",
     )
     options.add_study(parser, MeasureOptions, STUDY_ENGINE)
     options.add_out(parser, "page, tables and plots")

@@ -276,7 +276,7 @@ def add_vary(parser: argparse.ArgumentParser, more: str = "", values: str = "") 
         default=[],
         help=f"values of a tag: {_VALUES}{values}. PLUGIN.TAG,PLUGIN.TAG=... gives several tags "
         f"the same value. Other axes: {LINK_NAMES}, xacro.ARG, world"
-        f"{more}; repeatable, which makes a grid",
+        f"{more}; repeatable; several make a grid",
     )
 
 
@@ -304,7 +304,7 @@ def add_format(parser: argparse.ArgumentParser) -> None:
         type=parse.several(FORMATS),
         default=[FORMATS[0]],
         help=f"formats of the plot files: {', '.join(FORMATS)} (default: {FORMATS[0]}); pages "
-        "contain SVG, and PDF to save if it is chosen",
+        "contain SVG; with pdf, their plots can be saved as PDF",
     )
 
 

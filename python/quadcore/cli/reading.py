@@ -85,7 +85,7 @@ def describe_changes(arguments: argparse.Namespace) -> dict[str, str]:
 
 
 def collect_unique(option: str, pairs: list[tuple[str, str]]) -> dict[str, str]:
-    """Make a dictionary of pairs; raise `InputError` if a key comes twice."""
+    """Make a dictionary of pairs; raise `InputError` if a key occurs twice."""
     found: dict[str, str] = {}
     for key, value in pairs:
         if key in found:

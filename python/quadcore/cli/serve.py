@@ -43,7 +43,7 @@ def register(commands: Any) -> None:
         "--log",
         metavar="FILE",
         type=Path,
-        help="log of the first flight, .csv, .mat or .bag; the next flights go to NAME-2 ...",
+        help="log of the first flight, .csv, .mat or .bag; later flights are written to NAME-2 ...",
     )
     options.add_log_topics(parser)
     parser.add_argument(

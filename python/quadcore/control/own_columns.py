@@ -34,7 +34,7 @@ def list_names(controller: Any) -> List[str]:
 
 
 class OwnColumns:
-    """Values that a controller leaves in its `log`, at each call.
+    """Values that a controller writes into its `log` at each call.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def make_guides(
     Raises
     ------
     InputError
-        If a controller or reference is not valid, or their number is not that of the vehicles.
+        If a controller or reference is invalid, or their number differs from that of the vehicles.
     """
     n = len(vehicles.models)
     controllers = _repeat("controller", controller, n)

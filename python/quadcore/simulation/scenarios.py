@@ -199,7 +199,7 @@ def add_controller(model: Model, controller: PluginController) -> Model:
 
 
 def read_scenario(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:
-    """Read a scenario, unless it is read already; returns None for `NONE`."""
+    """Read a scenario, unless it is read already; return None for `NONE`."""
     if scenario is None or isinstance(scenario, Scenario):
         return scenario
     return None if str(scenario) == NONE else Scenario(scenario)

@@ -143,7 +143,7 @@ def call_apart(function: Callable[[], Result]) -> Result:
     QuadcoreError
         If the function raises an exception, or its process dies.
     KeyboardInterrupt
-        At an interrupt; no process remains.
+        If the user interrupts; no process remains.
     """
     outcomes: List[Any] = []
     run_contained(lambda _: function(), [0], lambda _, outcome: outcomes.append(outcome), 1)

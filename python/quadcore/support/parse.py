@@ -108,17 +108,17 @@ def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
 
 
 def pose(text: str) -> tuple[float, ...]:
-    """Read ``x,y,z[,roll,pitch,yaw]``, with commas or spaces between."""
+    """Read ``x,y,z[,roll,pitch,yaw]``, separated by commas or spaces."""
     return _numbers(text, "x,y,z[,roll,pitch,yaw]", (3, 6))
 
 
 def vector(text: str) -> tuple[float, ...]:
-    """Read ``x,y,z``, with commas or spaces between."""
+    """Read ``x,y,z``, separated by commas or spaces."""
     return _numbers(text, "x,y,z", (3,))
 
 
 def location(text: str) -> tuple[float, ...]:
-    """Read ``latitude,longitude[,altitude]``, with commas or spaces between."""
+    """Read ``latitude,longitude[,altitude]``, separated by commas or spaces."""
     return _numbers(text, "latitude,longitude[,altitude]", (2, 3))
 
 

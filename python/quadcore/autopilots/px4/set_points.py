@@ -19,7 +19,7 @@ _ALL = 0  # systems
 
 
 class SetPoints:
-    """Makes set-points relative to the place in which PX4 has started.
+    """Makes set-points relative to the place at which PX4 started.
 
     Parameters
     ----------

@@ -84,7 +84,7 @@ def benchmark(
     Parameters
     ----------
     controllers
-        As for `evaluate`. Default: all built-in controllers but those of firmwares.
+        As for `evaluate`. Default: all built-in controllers except those of firmware.
     version
         Version of the benchmark.
     vehicles, categories

@@ -73,7 +73,9 @@ def summarise(found: Benchmark) -> str:
 
 def _describe_missing(found: Benchmark) -> str:
     left = sum(1 for row in found.table if row["failure"] == NOT_FLOWN)
-    which = f"{left} flights are missing" if left else "some vehicles or categories are left out"
+    which = (
+        f"{left} flights are missing" if left else "not all vehicles and categories are selected"
+    )
     return f"This is a part of {found.definition.version}: {which}."
 
 

@@ -60,7 +60,9 @@ def describe_seeds(groups: Sequence[Mapping[str, Any]]) -> List[str]:
     certain = [group for group in flown if group["is_random"] is False]
     found = []
     if certain and len(certain) == len(flown):
-        found.append("Seeds change nothing here: nothing is random. There are no intervals.")
+        found.append(
+            "Nothing is random in these flights. Seeds have no effect, and there are no intervals."
+        )
     elif certain:
         names = dict.fromkeys(
             " on ".join(str(group[name]) for name in ("controller", "reference"))

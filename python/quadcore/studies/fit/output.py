@@ -113,18 +113,34 @@ def write_recorded_fit(folder: Path, fit: RecordedFit, world: World) -> List[Pat
     return [*written, *page]
 
 
+def describe_residual(name: str, unit: str, values: Sequence[float]) -> str:
+    """Describe the change of a residual.
+
+    Parameters
+    ----------
+    name, unit : str
+        Quantity and its unit.
+    values : sequence of float
+        RMS residual with the start values, with the fitted values, and of the latter in the
+        held-out parts (NaN without such parts).
+    """
+    before, after, held_out = values
+    change = "reduces" if after < before else "does not reduce"
+    verdict = (
+        f"The fit {change} the RMS residual of the {name}: {format_number(before)} {unit} with the "
+        f"start values, {format_number(after)} {unit} with the fitted values"
+    )
+    if math.isfinite(held_out):
+        verdict += f", {format_number(held_out)} {unit} in the held-out parts"
+    return verdict
+
+
 def write_fit(folder: Path, found: Fit, world: World) -> List[Path]:
     """Write the page of a fit to a log of quadcore, with measured and simulated motion."""
     from .plots import draw_differences  # matplotlib is slow to import
 
     residuals = found.list_residuals()
-    name, unit, (before, after, held_out) = residuals[0]
-    verdict = (
-        f"The fit reduces the RMS residual of the {name} from {format_number(before)} to "
-        f"{format_number(after)} {unit}"
-    )
-    if math.isfinite(held_out):
-        verdict += f", and to {format_number(held_out)} {unit} in the parts that were held out"
+    verdict = describe_residual(*residuals[0])
     rows = _list_parameters(found.start, found.values, found.identified.deviations, found.units)
     shown = [(each, unit, list(map(format_number, values))) for each, unit, values in residuals]
     images = draw_differences(found.motion) if found.motion else {}

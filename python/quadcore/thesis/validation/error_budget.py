@@ -60,7 +60,7 @@ def list_stages(drag: str, sim_slow: float, plant: str) -> Dict[Case, str]:
         chain[Case(engine, sim_slow, drag)] = ENGINES[engine]
     chain.setdefault(Case("eigen", 1.0, drag), "no slow-down")
     chain[Case("eigen", 1.0, drag, "chapter2")] = "drag model chapter2: parasitic drag as in (2.31)"
-    chain[Case("eigen", 1.0, drag, "given speeds")] = "what the thesis leaves out of its equations"
+    chain[Case("eigen", 1.0, drag, "given speeds")] = "effects that the thesis omits"
     chain[Case(MODEL, 1.0, drag)] = "Euler-Lagrange equations, integrated by DOP853"
     return chain
 

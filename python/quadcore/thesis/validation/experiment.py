@@ -33,7 +33,7 @@ TERMS: Mapping[str, Terms] = {
     LAG: Terms(),
     NO_LAG: Terms(motor_lag=False),
     "the torque of rotors that spin up": Terms(spin_up=True),
-    "rotors that a turning frame leaves behind": Terms(dragged_rotors=True),
+    "rotors that do not turn with the frame": Terms(dragged_rotors=True),
     "both: a gyrostat": GYROSTAT,
 }
 
