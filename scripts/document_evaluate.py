@@ -19,7 +19,7 @@ def main() -> None:
     )
     pictures = draw(found)
     for name, of in (("evaluate_errors", "errors_1"), ("evaluate_seeds", "seeds")):
-        save(name, pictures[of])
+        save(name, pictures[of].files["png"])
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         columns = make_table(fly_plan(plan, Path(folder)))
     pictures = draw(plan, columns, compute_sensitivities(plan, columns), "rms_position")
-    save("sweep_surface", pictures["surface"])
+    save("sweep_surface", pictures["surface"].files["png"])
 
 
 if __name__ == "__main__":

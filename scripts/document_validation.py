@@ -176,7 +176,7 @@ def main() -> None:
     wanted = list_figures(study)
     for name, picture in {**FROM_THE_COMMAND, "commands": "commands", "damping": "damping"}.items():
         function, arguments = wanted[picture]
-        drawn[name] = function(*arguments)
+        drawn[name] = function(*arguments).files["png"]
     for name, data in drawn.items():
         save(f"validation_{name}", data)
 
