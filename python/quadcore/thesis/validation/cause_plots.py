@@ -25,9 +25,7 @@ def draw_chains(chains: Sequence[Chain]) -> Drawing:
     groups = _list_bars(chains)
     bars = sum(len(group) for group in groups.values())
     height = 0.9 + 0.19 * (bars + len(groups))
-    figure = make_figure(
-        f"Change of the position by each step of the chain, drag: {chains[0].drag}", 9, height, _DPI
-    )
+    figure = make_figure(f"Effect of each change, drag: {chains[0].drag}", 9, height, _DPI)
     axes = figure.add_axes((0.36, 0.55 / height, 0.61, 1 - 1.0 / height))
     dress(axes)
     largest = [link.max for group in groups.values() for _, link in group]
