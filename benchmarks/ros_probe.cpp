@@ -1,14 +1,16 @@
 // A roscpp subscriber that measures, for ros_latency.py:
-//   ros_probe count SECONDS    messages of odom in that time: count, lost, simulated seconds
-//   ros_probe latency SAMPLES  time from a vel_cmd to the odometry that reflects it (us, one a
-//   line)
-//   ros_probe answer SECONDS   answers each odometry message: count, lost, simulated seconds
+//   ros_probe count SECONDS    reads odom: messages, lost ones, simulated seconds, elapsed seconds,
+//                              and by how many us more than the least they follow their stamps:
+//                              median, 99 %, longest
+//   ros_probe answer SECONDS   the same, with a command for each message
+//   ros_probe latency SAMPLES  time from a vel_cmd to the odometry that reflects it, us, one a line
 
 #include <nav_msgs/Odometry.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_msgs/Float64MultiArray.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -19,6 +21,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace {
 
@@ -36,14 +39,21 @@ class Counter {
         nh.subscribe("odom", 0, &Counter::take, this, ros::TransportHints().tcpNoDelay());
     while (count_ == 0) ros::spinOnce();
     count_ = lost_ = 0;
-    const ros::Time begin = last_;
-    const Clock::time_point start = Clock::now();
-    const Clock::time_point end =
-        start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    late_.clear();
+    begin_ = last_;
+    start_ = Clock::now();
+    const Clock::time_point end = start_ + std::chrono::duration_cast<Clock::duration>(
+                                               std::chrono::duration<double>(seconds));
     while (Clock::now() < end)
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
-    const double elapsed = std::chrono::duration<double>(Clock::now() - start).count();
-    std::printf("%ld %ld %.6f %.6f\n", count_, lost_, (last_ - begin).toSec(), elapsed);
+    const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+    std::sort(late_.begin(), late_.end());
+    const auto share = [this](double part) {
+      const auto place = static_cast<std::size_t>(part * static_cast<double>(late_.size() - 1));
+      return 1e6 * (late_[place] - late_.front());
+    };
+    std::printf("%ld %ld %.6f %.6f %.1f %.1f %.1f\n", count_, lost_, (last_ - begin_).toSec(),
+                elapsed, share(0.5), share(0.99), share(1));
   }
 
  private:
@@ -52,6 +62,8 @@ class Counter {
     if (count_ > 0) lost_ += std::lround((message.header.stamp - last_).toSec() * 1000) - 1;
     last_ = message.header.stamp;
     ++count_;
+    const double since_start = std::chrono::duration<double>(Clock::now() - start_).count();
+    late_.push_back(since_start - (last_ - begin_).toSec());
   }
 
   static constexpr double hover = 471.2;  // rad/s
@@ -60,7 +72,10 @@ class Counter {
   std_msgs::Float64MultiArray command_;
   long count_ = 0;
   long lost_ = 0;
-  ros::Time last_;
+  ros::Time begin_, last_;
+  Clock::time_point start_;
+  std::vector<double>
+      late_;  ///< time of arrival less that of the stamp, both from the start on [s]
 };
 
 class Latency {
