@@ -145,17 +145,18 @@ TEST_CASE("a vehicle rests on a box, and does not slide") {
 }
 
 TEST_CASE(
-    "a sphere slides on a box by the laws of friction, whatever the direction of its normal") {
+    "a box slides on another one by the laws of friction, whatever the direction of its normal") {
   // A cube slides down a wall that presses on it: gravity along the wall, and towards it.
   const Model m = bare("<box size=\"0.3 0.3 0.3\"/>",
                        "<gazebo reference=\"frame\"><mu1>0.3</mu1><mu2>0.3</mu2></gazebo>");
-  for (int axis = 0; axis < 3; ++axis) {
-    CAPTURE(axis);
+  for (int side = 0; side < 6; ++side) {
+    CAPTURE(side);
+    const int axis = side % 3, sign = side < 3 ? 1 : -1;
     Vector3d size = Vector3d::Constant(20), position(0.02, -0.01, 0.03);
-    position[axis] -= 0.15 + 10;
+    position[axis] -= sign * (0.15 + 10);
     World world = world_of({obstacle(ShapeKind::box, size, position)});
     world.gravity_W = Vector3d::Zero();
-    world.gravity_W[axis] = -10;
+    world.gravity_W[axis] = -10 * sign;
     world.gravity_W[(axis + 1) % 3] = 6;
     const auto engine = make_engine("eigen", m, world);
     VehicleState state = blank(0);
@@ -166,6 +167,41 @@ TEST_CASE(
     const double gained = state_of(*engine).linear_velocity[(axis + 1) % 3] - before;
     CHECK(gained / 0.2 == doctest::Approx(6 - 0.3 * 10).epsilon(0.02));
   }
+}
+
+TEST_CASE("friction holds a vehicle that is wedged between two walls, but not beside one") {
+  const Model m = bare("<box size=\"0.2 0.2 0.2\"/>", "");
+  for (const bool turned : {false, true}) {
+    CAPTURE(turned);
+    VehicleState state = blank(0);
+    if (turned) state.orientation = Eigen::AngleAxisd(0.9, Vector3d::UnitZ());
+    const Vector3d middle(0.02, -0.01, 0.03);  // of the shape
+    std::vector<Obstacle> walls;
+    for (const double x : {1.1 - 1e-6, -1.1 + 2e-6}) {
+      walls.push_back(
+          obstacle(ShapeKind::box, {2, 4, 9}, state.orientation * (middle + Vector3d(x, 0, 0))));
+      walls.back().orientation_W = state.orientation;
+    }
+    const auto between = make_engine("eigen", m, world_of(walls));
+    const auto beside = make_engine("eigen", m, world_of({walls[0]}));
+    for (Engine* engine : {between.get(), beside.get()}) {
+      engine->set_state(state);
+      fly(*engine, 1000);
+    }
+    CHECK(state_of(*between).position.z() > -0.01);
+    CHECK(state_of(*beside).position.z() < -4);
+  }
+}
+
+TEST_CASE("tags of obstacles that have no effect are named once") {
+  Obstacle slippery = obstacle(ShapeKind::box, {2, 2, 1}, {0, 0, -0.5});
+  slippery.where = "a.world:7";
+  slippery.slip1 = 0.1;
+  const auto engine = make_engine("eigen", vehicle(), world_of({slippery, slippery}));
+  REQUIRE(engine->warnings().size() == 1);
+  CHECK(engine->warnings()[0] ==
+        "a.world:7: the engine eigen ignores <slip1>, <slip2> and <bounce> of 'thing' and 1 more "
+        "obstacles. Use the engine ode or gazebo11 to include them.");
 }
 
 TEST_CASE("away from obstacles a vehicle moves as in the empty world, to the bit") {

@@ -71,7 +71,9 @@ TEST_CASE("a wake slows down with the distance and widens") {
     CHECK(speed(half_width, s * distance) ==
           doctest::Approx(speed(0, s * distance) / 2).epsilon(1e-14));
   }
-  CHECK(speed(0.1, 0.3 * distance) == doctest::Approx(speed(0.1, 2.5 * distance)).epsilon(1e-14));
+  CHECK(speed(0.1, distance) == doctest::Approx(speed(0.1, 2.5 * distance)).epsilon(1e-14));
+  CHECK(speed(0.1, 0.3 * distance) == doctest::Approx(0.3 * speed(0.1, distance)).epsilon(1e-14));
+  CHECK(speed(0.5, 1e-9) < 1e-8);  // no step for vehicles side by side
   CHECK(speed(0.1, 0) == 0);
   CHECK(speed(0, -1) == 0);
 }

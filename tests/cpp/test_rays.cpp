@@ -67,6 +67,8 @@ TEST_CASE("a ray meets each shape at the distance that geometry gives") {
   CHECK(distance_along({{3, 3, 5}, down}, plane) == doctest::Approx(4.5 / 0.8));
   CHECK(distance_along({{3, 3, 5}, -down}, plane) == INFINITY);
   CHECK(distance_along({{3, 3, 5}, {1, 0, 0}}, plane) == INFINITY);
+  CHECK(distance_along({{3, 3, 0.5}, down}, plane) == 0);
+  CHECK(distance_along({{3, 3, 0.5}, -down}, plane) == INFINITY);  // it leaves the surface
 }
 
 TEST_CASE("a ray ends on the surface and does not cross it before") {

@@ -110,6 +110,21 @@ def test_noise_has_its_deviation_and_repeats_with_its_seed(name, topic, field, p
     assert measure(1).tobytes() == errors.tobytes() != measure(2).tobytes()
 
 
+@pytest.mark.parametrize("limit", ["minRange", "maxRange"])
+def test_a_measured_distance_beyond_a_limit_is_infinite(limit, place):
+    urdf = make_model("range", noise=0.02, rate=1000, **{limit: 3.5})
+    simulation = place(urdf, "box", spawn=(0, 0, 2, 0, 0, 0))
+    measured = []
+    for _ in range(200):
+        start(simulation, position=(0, 0, 1))
+        measured.append(simulation.topic("range")["range"])
+    measured = np.array(measured)
+    finite = measured[np.isfinite(measured)]
+    beyond = -math.inf if limit == "minRange" else math.inf
+    assert 50 < len(finite) < 150 and set(measured[~np.isfinite(measured)]) == {beyond}
+    assert (finite >= 3.5).all() if limit == "minRange" else (finite <= 3.5).all()
+
+
 def test_a_log_contains_the_distances_and_reads_them_back(place, tmp_path):
     urdf = make_model("lidar", samples=2, minAngle=0, maxAngle=math.pi, rate=100)
     log = place(urdf, "box").run(0.05, topics=["scan"])

@@ -39,7 +39,7 @@ class CompliantGround {
   void add_forces(const Kinematics& kinematics, Loads& loads);
   void end();
 
-  /// Return the bristles, the only memory of the contact.
+  /// Forget the bristles, the only memory of the contact.
   void clear();
   std::size_t saved_size() const { return Bristle::saved_size * shapes_.size(); }
   double* save(double* to) const;

@@ -16,10 +16,15 @@
 namespace quadcore {
 namespace {
 
-/// Maximum number of obstacles that press on one point. The springs are softer by this and by the
-/// friction, so that they are stable together.
+/// Maximum number of obstacles that press on one point. The springs are softer, so that these and
+/// one friction are stable together.
 constexpr std::size_t most_obstacles_at_once = 3;
 constexpr double shared_stiffness = 1.0 / (most_obstacles_at_once + 1);
+/// Cosine of the angle from which on a normal is opposite to the axis of friction. It is well
+/// beyond a right angle, so that the normals of a floor and a wall are not.
+constexpr double turned_round = -0.5;
+/// Length of the mean of unit normals below which it has no direction.
+constexpr double smallest_mean_normal = 1e-6;
 /// Maximum force of a point in an obstacle at the start of a flight, in weights of the vehicle.
 constexpr double largest_start_force = 10;
 
@@ -164,6 +169,7 @@ void CompliantObstacles::press(Shape& shape, const Kinematics& k, Loads& loads) 
   points_.clear();
   PressedPatch patch;
   Vector3d f_W = Vector3d::Zero(), tau_W = Vector3d::Zero(), center_W = Vector3d::Zero();
+  Vector3d axis_W = shape.axis_W, sum_W = Vector3d::Zero();
   const Matrix3d R_WS = pressed.R_WL * shape.R_LS;
   for (const Vector3d& p_S : shape.points_S) {
     if (near_shape_.empty()) break;
@@ -184,15 +190,21 @@ void CompliantObstacles::press(Shape& shape, const Kinematics& k, Loads& loads) 
       patch.friction += force * Vector3d(mu1, mu2, (mu1 + mu2) / 2);
       center_W += force * q_W;
       f_W += force * normal_W;
+      if (axis_W.isZero(0)) axis_W = align(normal_W, Vector3d::UnitZ());
+      sum_W += force * align(normal_W, axis_W);
       tau_W += (q_W - motion.p_W).cross(force * normal_W);
       points_.push_back({q_W, force});
     }
   }
-  if (!(f_W.norm() > 0)) return shape.bristle.release(stage_, dt_);
+  shape.next_axis_W.setZero();
+  if (!(patch.pressing > 0)) return shape.bristle.release(stage_, dt_);
   add_pressing(k, shape, f_W, tau_W, loads);
 
   center_W /= patch.pressing;
-  const Quaterniond q_NW = Quaterniond::FromTwoVectors(f_W, Vector3d::UnitZ());
+  const double part = sum_W.norm() / patch.pressing;
+  if (part > smallest_mean_normal) axis_W = sum_W / sum_W.norm();
+  shape.next_axis_W = axis_W;
+  const Quaterniond q_NW = Quaterniond::FromTwoVectors(axis_W, Vector3d::UnitZ());
   for (const Point& point : points_) {
     patch.square += point.force * (q_NW * (point.p_W - center_W)).head<2>().squaredNorm();
   }
@@ -206,6 +218,10 @@ void CompliantObstacles::press(Shape& shape, const Kinematics& k, Loads& loads) 
                 loads);
 }
 
+Vector3d CompliantObstacles::align(const Vector3d& normal_W, const Vector3d& axis_W) {
+  return normal_W.dot(axis_W) < turned_round ? (-normal_W).eval() : normal_W;
+}
+
 /// Add the forces of the springs.
 void CompliantObstacles::add_pressing(const Kinematics& k, const Shape& shape, const Vector3d& f_W,
                                       const Vector3d& tau_W, Loads& loads) {
@@ -216,20 +232,33 @@ void CompliantObstacles::add_pressing(const Kinematics& k, const Shape& shape, c
 }
 
 void CompliantObstacles::end() {
-  for (Shape& shape : shapes_) shape.bristle.end(dt_);
+  for (Shape& shape : shapes_) {
+    shape.bristle.end(dt_);
+    shape.axis_W = shape.next_axis_W;
+  }
 }
 
 void CompliantObstacles::clear() {
-  for (Shape& shape : shapes_) shape.bristle.clear();
+  for (Shape& shape : shapes_) {
+    shape.bristle.clear();
+    shape.axis_W.setZero();
+  }
 }
 
 double* CompliantObstacles::save(double* to) const {
-  for (const Shape& shape : shapes_) to = shape.bristle.save(to);
+  for (const Shape& shape : shapes_) {
+    to = shape.bristle.save(to);
+    to = std::copy_n(shape.axis_W.data(), 3, to);
+  }
   return to;
 }
 
 const double* CompliantObstacles::restore(const double* from) {
-  for (Shape& shape : shapes_) from = shape.bristle.restore(from);
+  for (Shape& shape : shapes_) {
+    from = shape.bristle.restore(from);
+    std::copy_n(from, 3, shape.axis_W.data());
+    from += 3;
+  }
   return from;
 }
 

@@ -19,7 +19,7 @@ namespace quadcore {
 /// Obstacles around a gyrostat. Points spread over the vehicle's shapes have springs by
 /// laws/contact.hpp, along the shortest way out of each obstacle. These forces have a potential, so
 /// that an impact gives back at most the energy that it took. Each shape has a bristle for friction
-/// across the mean normal.
+/// across the mean normal. Opposite normals, as of a wedged vehicle, count as one.
 class CompliantObstacles {
  public:
   /// Throws InputError for a mesh, of the vehicle or among the obstacles. The model must outlive
@@ -39,9 +39,9 @@ class CompliantObstacles {
   void add_forces(const Kinematics& kinematics, Loads& loads);
   void end();
 
-  /// Return the bristles, the only memory of the contact.
+  /// Forget the bristles and their axes, the only memory of the contact.
   void clear();
-  std::size_t saved_size() const { return Bristle::saved_size * shapes_.size(); }
+  std::size_t saved_size() const { return (Bristle::saved_size + 3) * shapes_.size(); }
   double* save(double* to) const;
   const double* restore(const double* from);
 
@@ -58,6 +58,8 @@ class CompliantObstacles {
     bool turns;     ///< whether it turns with a rotor about whose joint it is none
     StableContact stable;
     Bristle bristle;
+    Vector3d axis_W = {0, 0, 0};  ///< of the friction in the previous step; zero without contact
+    Vector3d next_axis_W = {0, 0, 0};  ///< of the friction at this stage
   };
   /// A touching point, for the extent of the contact patch.
   struct Point {
@@ -70,6 +72,8 @@ class CompliantObstacles {
   };
 
   void press(Shape& shape, const Kinematics& kinematics, Loads& loads);
+  /// Return an axis along a normal that does not turn round from step to step.
+  static Vector3d align(const Vector3d& normal_W, const Vector3d& axis_W);
   static void add_pressing(const Kinematics& kinematics, const Shape& shape, const Vector3d& f_W,
                            const Vector3d& tau_W, Loads& loads);
   /// Collect the deepest obstacles that a ball touches.

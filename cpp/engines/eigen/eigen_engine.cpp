@@ -56,6 +56,22 @@ std::vector<std::string> list_unused_tags(const Model& model) {
   return all;
 }
 
+/// Return a warning about tags of obstacles that have no effect here, if some have them.
+std::vector<std::string> list_unused_tags(const std::vector<Obstacle>& obstacles) {
+  const Obstacle* first = nullptr;
+  int count = 0;
+  for (const Obstacle& obstacle : obstacles) {
+    if (obstacle.slip1 == 0 && obstacle.slip2 == 0 && obstacle.restitution == 0) continue;
+    if (!first) first = &obstacle;
+    ++count;
+  }
+  if (!first) return {};
+  const std::string others =
+      count > 1 ? " and " + std::to_string(count - 1) + " more obstacles" : "";
+  return {first->where + ": the engine eigen ignores <slip1>, <slip2> and <bounce> of '" +
+          first->model + "'" + others + ". Use the engine ode or gazebo11 to include them."};
+}
+
 /// Numbers of substeps in contact, where impacts are faster than all other motion. Obstacles may be
 /// thin, and the vehicle must not pass through them.
 constexpr int parts_at_ground = 4, parts_at_obstacle = 16;
@@ -78,7 +94,10 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       reacting_(model.joints.size()) {
   refuse_tags(model_);
   refuse_free_bodies(world);
-  if (!world.obstacles.empty()) obstacles_.emplace(model_, body_, world.obstacles);
+  if (!world.obstacles.empty()) {
+    obstacles_.emplace(model_, body_, world.obstacles);
+    for (const std::string& unused : list_unused_tags(world.obstacles)) warnings_.push_back(unused);
+  }
   if (world.ground_plane) ground_.emplace(model_, body_, world.ground);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
   RotorMotions& rotors = kinematics_.rotors;

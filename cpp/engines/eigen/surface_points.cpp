@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quadcore/plugin/elementary.hpp"
+
 namespace quadcore {
 namespace {
 
@@ -42,9 +44,8 @@ std::vector<Vector3d> spread_points(const Collision& shape) {
     const bool has_inner = is_end && radius > spacing;
     for (int ring = has_inner ? 1 : 2; ring <= 2; ++ring) {
       for (int i = 0; i < around_cylinder; ++i) {
-        const double angle = 2 * M_PI * i / around_cylinder;
-        points.emplace_back(radius * ring / 2 * std::cos(angle),
-                            radius * ring / 2 * std::sin(angle), z);
+        const elementary::SineCosine turned = elementary::sincos(2 * M_PI * i / around_cylinder);
+        points.emplace_back(radius * ring / 2 * turned.cos, radius * ring / 2 * turned.sin, z);
       }
     }
     if (is_end) points.emplace_back(0, 0, z);

@@ -243,10 +243,11 @@ void WorldContact::find_free_bounds(const std::vector<double>& unmoved) {
   }
 }
 
-/// A vehicle has moved if a free body has.
+/// A vehicle has moved if a free body has, or if there is none.
 MovingModel WorldContact::find_vehicle(Shapes& shapes) const {
   const auto is_new = [](const MovingModel& free) { return std::isinf(free.unmoved); };
-  const bool is_first = !moving_.empty() && std::all_of(moving_.begin(), moving_.end(), is_new);
+  const auto end = moving_.begin() + static_cast<std::ptrdiff_t>(first_vehicle_ - still_);
+  const bool is_first = end != moving_.begin() && std::all_of(moving_.begin(), end, is_new);
   return {find_bounds(shapes), is_first ? dInfinity : 0};
 }
 

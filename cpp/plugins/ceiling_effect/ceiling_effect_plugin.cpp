@@ -30,7 +30,8 @@ class CeilingEffectPlugin final : public Plugin {
             setup.topics.takes(setup.parameters.text("effectiveness"), shares(rotors_.size()))) {
     if (!setup.world.obstacles.empty()) return;
     setup.warnings.push_back(
-        "the world has no obstacles, so there is no ceiling effect. Use a world with obstacles.");
+        "the world has no obstacles, so only the ground above a vehicle that is upside down has a "
+        "ceiling effect. Use a world with obstacles.");
   }
 
   std::size_t state_size() const override { return kOfRotor * rotors_.size(); }

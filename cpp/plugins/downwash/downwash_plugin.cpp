@@ -15,6 +15,10 @@ namespace {
 enum Memory { kSaidBare, kSaidNear, kAir, kRotors = kAir + 3 };
 enum OfRotor { kShare, kFlow, kOfRotor = kFlow + 3 };
 
+/// Speed of a wake from which on a vehicle is warned that the model does not hold there, as a part
+/// of the induced velocity in hover.
+constexpr double felt = 0.01;
+
 /// Wakes of the other vehicles. Their velocity at the frame's origin is wind to all force laws. At
 /// each rotor, the part V against the thrust reduces the thrust T0 that the other plugins exert:
 /// T = T0 (1 - c J), with the advance ratio J = V/(n D) of the rotor with n turns per second and
@@ -115,8 +119,7 @@ class DownwashPlugin final : public Plugin {
     const Vector3d& p_W = sample.kinematics.p_WF;
     const double s = jet.depth(p_W);
     if (state[kSaidNear] != 0 || !(s > 0 && s < TurbulentJet::developed)) return;
-    const Vector3d aside_W = p_W - jet.origin_W - s * jet.length * jet.direction_W;
-    if (aside_W.norm() > jet.length) return;
+    if (jet.velocity_at(p_W).norm() < felt * jet.hover_speed) return;
     state[kSaidNear] = 1;
     sample.warnings.push_back(
         "the vehicle is less than 2.5 rotor distances below '" + other.name +

@@ -11,8 +11,9 @@ namespace quadcore::downwash {
 /// Mean flow below a hovering quadrotor as a turbulent jet (Bauersfeld, Muller, Ziegler, Coletti,
 /// Scaramuzza, "Robotics meets Fluid Dynamics: A Characterization of the Induced Airflow below a
 /// Quadrotor as a Turbulent Jet", IEEE RA-L, 2025, arXiv:2403.13321). It holds from 2.5 l below the
-/// rotors, where l is the distance of opposite rotors. Nearer, the flow is that at 2.5 l; above
-/// the rotors, the air is still.
+/// rotors, where l is the distance of opposite rotors. Nearer, the flow is that at 2.5 l, and
+/// within l it grows from zero at the height of the rotors, so that it has no step. Above the
+/// rotors, the air is still.
 struct TurbulentJet {
   static constexpr double decay = 10.11;            ///< B_d, eq. (9)
   static constexpr double spreading = 0.07668;      ///< S, eq. (9)
@@ -61,7 +62,7 @@ struct TurbulentJet {
     const double center = hover_speed * decay / beyond;               // eq. (2)
     const double ratio = r / (spreading * beyond);                    // eqs. (4), (6)
     const double profile = 1 + (std::sqrt(2.0) - 1) * ratio * ratio;  // eq. (3)
-    return center / (profile * profile) * direction_W;
+    return std::min(s, 1.0) * center / (profile * profile) * direction_W;
   }
 };
 

@@ -24,9 +24,9 @@ struct RangeLimits {
   /// Return the measured distance along a ray with an error [m]: infinite beyond the maximum,
   /// minus infinite below the minimum (REP 117).
   double measure(const Ray& ray, const World& world, double error) const {
-    const double range = range_along(ray, world, maximum);
+    const double range = range_along(ray, world, maximum + std::abs(error)) + error;
     if (range < minimum) return -INFINITY;
-    return range + error;
+    return range <= maximum ? range : INFINITY;
   }
 
   static TagSpec minimum_tag() {

@@ -208,9 +208,11 @@ void FlightThread::wait_for_command(Lock& lock) {
 }
 
 /// Whether a command may make steps itself, which saves two hand-overs between threads for each
-/// message: if the flight's thread waits for it, and would not have to wait after it.
+/// message: if the flight's thread waits for it, no other command makes steps, and the thread would
+/// not have to wait after it.
 bool FlightThread::may_step_with_command() const {
-  return lends_ && real_time_factor_ == 0 && !settings_.follows_clock && !listener_.waits_to_feed();
+  return lends_ && !is_lent_ && real_time_factor_ == 0 && !settings_.follows_clock &&
+         !listener_.waits_to_feed();
 }
 
 /// Makes the steps up to the next odometry message in the thread of the command, while the flight's

@@ -81,10 +81,12 @@ double distance_to_mesh(const Obstacle& obstacle, const Vector3d& from, const Ve
   return nearest;
 }
 
+/// A ray that leaves the plane on its upper side does not meet it.
 double distance_to_plane(const Vector3d& normal, double height, const Ray& ray) {
-  const double distance =
-      (height - normal.dot(ray.origin_W)) / normal.dot(ray.direction_W);  // parallel: not finite
-  return std::isfinite(distance) && distance >= 0 ? distance : INFINITY;
+  const double gap = height - normal.dot(ray.origin_W), slope = normal.dot(ray.direction_W);
+  if (slope == 0 || (gap == 0 && slope > 0)) return INFINITY;
+  const double distance = gap / slope;
+  return distance >= 0 ? distance : INFINITY;
 }
 
 }  // namespace

@@ -70,6 +70,10 @@ void Simulation::warn(const std::string& warning) {
 void Simulation::step(std::int64_t n, TotalVariation* rates) {
   if (n < 0)
     throw InputError("the step count is " + std::to_string(n) + ". Give a whole number >= 0.");
+  if (rates && rates->sums().size() != model().joints.size()) {
+    throw InputError("the sums of joint rates are " + std::to_string(rates->sums().size()) +
+                     ". Give one for each joint.");
+  }
   check_usable();
   try {
     for (; n > 0; --n) {
