@@ -184,7 +184,10 @@ class Autopilot:
         return self._recorder
 
     def close(self) -> None:
-        """Write the session; a subclass also ends the program. Called after every flight."""
+        """Write the session; a subclass also ends the program.
+
+        quadcore calls this method after every flight.
+        """
         if self._recorder is not None:
             self._recorder.write()
             self._recorder = None

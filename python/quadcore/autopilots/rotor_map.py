@@ -52,7 +52,7 @@ def find_spin(rotor: Any) -> int:
 
 
 def check_reaction(rotors: Sequence[Any], model: str) -> None:
-    """Raise `InputError` if an autopilot cannot fly the yaw axis of a vehicle.
+    """Raise `InputError` if an autopilot cannot control the yaw of a vehicle.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ class Sticks(NamedTuple):
 
 
 class StickPilot:
-    """Controls position with the sticks of an autopilot that levels itself.
+    """Position controller that moves the sticks of a self-levelling autopilot.
 
     A PID controller with feed-forward gives the acceleration. The direction of the thrust gives
     roll and pitch, and its magnitude the throttle. The gains suit an attitude response of about
@@ -50,7 +50,7 @@ class StickPilot:
     max_yaw_rate : float
         Yaw rate of a full yaw stick, rad/s.
     idle : float
-        Output of an armed motor without throttle, from 0 to 1.
+        Output of an armed motor at zero throttle, from 0 to 1.
     """
 
     def __init__(

@@ -78,7 +78,7 @@ class CommandAll:
     calls : int
         Number of calls.
     saturated : ndarray (n,) of int
-        Number of commands of each vehicle with a rotor at its limit.
+        For each vehicle, number of commands in which a rotor is at its limit.
     """
 
     def __init__(self, controller: Any, reference: Any, n: int, limits: np.ndarray) -> None:

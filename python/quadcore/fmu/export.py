@@ -97,7 +97,7 @@ def export_fmu(
 
 
 def write_fmu(path: Path, plan: FlightPlan) -> None:
-    """Write the vehicle of a plan as an FMU; raises as `export_fmu` does."""
+    """Write the vehicle of a plan as an FMU. It raises the errors of `export_fmu`."""
     simulation = plan.simulation()
     if plan.engine not in dict(_core.engines()):
         raise InputError(f"an FMU cannot contain the engine {plan.engine}. Choose another engine.")

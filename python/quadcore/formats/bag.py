@@ -75,7 +75,7 @@ def read_path(path: Path) -> np.ndarray:
 
 
 def read_log(path: Path) -> LogRows:
-    """Read a bag of `write_log` or of the node.
+    """Read a bag that `write_log` or the ROS node wrote.
 
     A bag of the node gives one row for each time with both true odometry and rotor speeds.
 

@@ -58,7 +58,7 @@ class _Entry(NamedTuple):
 
 
 class ExpansionCache(Generic[Expansion]):
-    """Expansions by file, arguments and working folder."""
+    """Cache of xacro expansions by file, arguments and working folder."""
 
     def __init__(self) -> None:
         self._entries: OrderedDict[Any, _Entry] = OrderedDict()

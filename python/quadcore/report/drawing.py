@@ -39,7 +39,7 @@ class Drawing(NamedTuple):
 
 @contextmanager
 def use_formats(formats: Sequence[str]) -> Iterator[None]:
-    """Write plots in formats within the block."""
+    """Write plots in the given formats within the `with` block."""
     token = _formats.set(tuple(formats))
     try:
         yield

@@ -59,7 +59,7 @@ NOTHING = 1e-6  # m, m/s, rad/s, deg: a smaller range is rounding noise
 
 
 def png(figure: Figure) -> bytes:
-    """Return a figure as PNG; equal flights give equal bytes."""
+    """Return a figure as PNG. Identical flights give identical bytes."""
     return _write(figure, "png")
 
 

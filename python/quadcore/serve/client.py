@@ -80,7 +80,7 @@ class Client:
         return self._ask(Request.STEP, [steps, *(() if speeds is None else speeds)])
 
     def reset(self, seed: Optional[int] = None) -> Row:
-        """Start another flight, by default with the same seed; returns its first row."""
+        """Start another flight, by default with the same seed, and return its first row."""
         return self._ask(Request.RESET, [] if seed is None else [seed])
 
     def close(self) -> None:

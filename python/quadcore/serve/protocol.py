@@ -32,7 +32,7 @@ class Request(IntEnum):
 
 
 class Reply(IntEnum):
-    """Kind of a reply."""
+    """Kind of reply from the server."""
 
     DONE = 0
     REFUSED = 1

@@ -146,9 +146,9 @@ class BatchSimulation(_core.Batch):
         return out
 
     def set_state(self, rows: npt.ArrayLike) -> None:
-        """Set the states of all vehicles, at time 0.
+        """Set the states of all vehicles and their times to 0.
 
-        Commands stay. Failed vehicles are simulated again.
+        The commands do not change. Failed vehicles are simulated again.
 
         Parameters
         ----------

@@ -41,7 +41,7 @@ def read_vehicles(
     xacro_args: Optional[Mapping[str, Any]],
     ignore: Sequence[str],
 ) -> Vehicles:
-    """Read the models of n vehicles, each different model once.
+    """Read the models of n vehicles. Read each distinct model only once.
 
     Raises
     ------

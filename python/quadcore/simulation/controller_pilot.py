@@ -99,7 +99,7 @@ class ControllerPilot(ReferencePilot):
 
     @property
     def summary(self) -> str:
-        """Text that the controller reports of its last flight; "" for most controllers."""
+        """Text that the controller reports about its last flight; "" for most controllers."""
         return str(getattr(self._controller, "summary", ""))
 
     @property
@@ -121,7 +121,7 @@ class ControllerPilot(ReferencePilot):
 
     @property
     def estimate_errors(self) -> Optional[np.ndarray]:
-        """Result of `EstimateErrors.rows`; None without `note_estimates`."""
+        """Errors of its estimates (`EstimateErrors`); None without `note_estimates`."""
         return None if self._estimate_errors is None else self._estimate_errors.rows
 
     def note_estimates(self) -> None:
@@ -244,7 +244,7 @@ def make_pilot(
 
 @contextmanager
 def convert_controller_errors(simulation: _core.Simulation) -> Iterator[None]:
-    """Convert an error of a controller to a `FlightError` with a message of one line.
+    """Convert a controller's error to a `FlightError` with a one-line message.
 
     Raises
     ------

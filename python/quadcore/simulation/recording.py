@@ -90,7 +90,7 @@ class FastestRotor:
 
 
 class TrackingError:
-    """Recorder of the tracking error; NaN without rows."""
+    """Recorder of the tracking error. The results are NaN if no row was recorded."""
 
     wrenches = False
 
@@ -116,17 +116,17 @@ class TrackingError:
 
     @property
     def max(self) -> float:
-        """Maximum of all rows, m."""
+        """Maximum tracking error of all rows, m."""
         return self._largest if self._count else math.nan
 
     @property
     def rms(self) -> float:
-        """Root mean square of all rows, m."""
+        """Root mean square of the tracking error of all rows, m."""
         return math.sqrt(self._squares / self._count) if self._count else math.nan
 
     @property
     def final(self) -> float:
-        """Maximum of the last `TAIL` seconds, m."""
+        """Maximum tracking error in the last `TAIL` seconds, m."""
         if not self._count:
             return math.nan
         end = self._late[-1][0][-1]

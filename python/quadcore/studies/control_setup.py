@@ -118,7 +118,7 @@ class ControlSetup:
         return _is_user_code(self.things[controller])
 
     def is_plugin(self, controller: int) -> bool:
-        """Whether a controller is a plugin in C++."""
+        """Whether a controller is a C++ plugin."""
         return _is_plugin(self.things[controller])
 
     def is_privileged(self, controller: int) -> bool:

@@ -22,14 +22,14 @@ def printable_name(name: Union[str, Path]) -> str:
 
 @contextmanager
 def atomic_write(path: Path) -> Iterator[IO[bytes]]:
-    """Open a file for writing that appears completely or not at all.
+    """Open a file for writing, so that the complete file appears or none.
 
-    Links are followed, and the permissions of an older file stay.
+    The function follows links and keeps the permissions of an existing file.
 
     Raises
     ------
     InputError
-        If the file cannot be written; an older file stays, and no partial file remains.
+        If the file cannot be written. An existing file is unchanged, and no partial file remains.
     """
     target = Path(os.path.realpath(str(path)))
     part = name_temporary(target)

@@ -11,7 +11,7 @@ from .arguments import MEASURED
 
 
 def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
-    """Return the reader of ``KEY=VALUE``; the two groups of `pattern` are key and value."""
+    """Return a function that splits ``KEY=VALUE`` into the two groups of `pattern`."""
 
     def parse(text: str) -> tuple[str, str]:
         match = re.fullmatch(pattern, text, re.DOTALL)

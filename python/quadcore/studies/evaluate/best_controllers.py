@@ -22,14 +22,15 @@ def mark_best(groups: Sequence[Dict[str, Any]], flights: Sequence[Sequence[float
 
     The best controller of a cell has the lowest mean of `RANKED` among those without a failed
     flight. A t test over the seeds compares it with each of the others, with Holm's correction for
-    all comparisons of the study. Those that do not differ significantly are best, too.
+    all comparisons of the study. Controllers that do not differ significantly from it are marked,
+    too.
 
     Parameters
     ----------
     groups
         Rows; ``p_best`` becomes the corrected p-value, NaN without a comparison.
     flights
-        `RANKED` of the flights of each row, by seed; NaN for a failure.
+        For each row, the metric `RANKED` of each flight, by seed; NaN for a failed flight.
     """
     cells: Dict[Any, List[int]] = {}
     for row, group in enumerate(groups):

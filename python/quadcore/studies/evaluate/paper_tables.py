@@ -20,8 +20,7 @@ _SPECIAL = {**{c: f"\\{c}" for c in "&%$#_{}"}, "~": r"\textasciitilde{}",
 def make_rows(groups: Groups, units: Mapping[str, str] = UNITS) -> List[List[Any]]:
     """Make rows of metric, cell, and mean with interval of each controller, under a header.
 
-    A controller with a failed flight has the mean of its other flights, and their number is in the
-    column ``failed``.
+    The mean excludes failed flights. The column ``failed`` contains their number.
     """
     names = _list_controllers(groups)
     header = [

@@ -61,7 +61,8 @@ class Replay(NamedTuple):
 def replay_flight(fitted: FittedModel, flight: PreparedFlight, controller: str) -> Replay:
     """Simulate a flight with a controller that follows the recorded set-points.
 
-    The simulation starts in the measured state, in hover. Each set-point holds until the next.
+    The simulation starts in the measured state, with the rotors at hover speed. Each set-point
+    holds until the next.
 
     Parameters
     ----------

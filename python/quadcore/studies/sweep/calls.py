@@ -63,7 +63,7 @@ class Calls:
         return self.design.names
 
     def list_cells(self, row: int) -> Dict[str, Any]:
-        """Return the point of a row."""
+        """Return the parameter values of a row, by name."""
         return dict(self.design[row])
 
     def make_spec(self, row: int) -> Call:

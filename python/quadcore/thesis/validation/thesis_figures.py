@@ -11,7 +11,7 @@ SIM_SLOW = (1.0, 8.0, 10.0, 18.0)
 
 
 class FigureKind(NamedTuple):
-    """Kind of figure that chapter 6.1 shows for each drag."""
+    """Kind of figure that section 6.1 of the thesis shows for each drag."""
 
     title: str
     columns: slice
