@@ -1,7 +1,6 @@
 #include "compliant_ground.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 
 #include "contact_surface.hpp"
@@ -12,12 +11,6 @@
 #include "touching_points.hpp"
 
 namespace quadcore {
-namespace {
-
-/// Maximum force of a point on the ground at the start of a flight, in weights of the vehicle.
-constexpr double hardest_start = 10;
-
-}  // namespace
 
 CompliantGround::CompliantGround(const Model& model, const Gyrostat& body, const Surface& ground)
     : model_(model),
@@ -64,7 +57,7 @@ void CompliantGround::refuse_deep(const Kinematics& k, double dt) const {
     deepest = std::max(deepest, depth);
     hardest = std::max(hardest, press.stiffness * depth);
   }
-  if (hardest <= hardest_start * weight_) return;
+  if (hardest <= largest_start_force * weight_) return;
   std::ostringstream what;
   what << "the vehicle starts " << deepest
        << " m deep in the ground, and the contact of the engine eigen would throw it up. Start at "

@@ -25,8 +25,6 @@ constexpr double shared_stiffness = 1.0 / (most_obstacles_at_once + 1);
 constexpr double turned_round = -0.5;
 /// Length of the mean of unit normals below which it has no direction.
 constexpr double smallest_mean_normal = 1e-6;
-/// Maximum force of a point in an obstacle at the start of a flight, in weights of the vehicle.
-constexpr double largest_start_force = 10;
 
 void refuse_meshes(const std::vector<Obstacle>& obstacles) {
   for (const Obstacle& obstacle : obstacles) {
@@ -68,7 +66,6 @@ CompliantObstacles::CompliantObstacles(const Model& model, const Gyrostat& body,
       shape.radius = collision.kind == ShapeKind::sphere ? collision.size.x() : 0;
       shape.reach = outer_radius(collision.kind, collision.size);
       shape.revolves = i > 0 && revolves(model, i, collision);
-      shape.turns = i > 0 && !shape.revolves;
       shape.stable = stable[shapes_.size()];
       shape.stable.pressing *= shared_stiffness;
       shape.stable.rubbing *= shared_stiffness;
@@ -97,7 +94,7 @@ bool CompliantObstacles::is_near(const Vector3d& p_WC, double speed, double dt) 
 bool CompliantObstacles::is_ahead(const Kinematics& k, double dt) const {
   for (const Shape& shape : shapes_) {
     const LinkMotion motion = find_shape_motion(model_, k, shape.link, *shape.collision);
-    const double turning = shape.turns ? motion.w_W.norm() : k.w_WF_F.norm();
+    const double turning = shape.turns() ? motion.w_W.norm() : k.w_WF_F.norm();
     const double speed = motion.velocity(motion.p_WS).norm() + turning * shape.reach;
     const double radius = shape.reach + laws::ahead(speed, dt);
     for (const Obstacle* obstacle : near_) {

@@ -55,11 +55,13 @@ class CompliantObstacles {
     double radius;  ///< of the ball about each point: that of a sphere, else 0 [m]
     double reach;   ///< distance of its farthest point from its centre [m]
     bool revolves;  ///< whether it is a body of revolution about the joint of its rotor
-    bool turns;     ///< whether it turns with a rotor about whose joint it is none
     StableContact stable;
     Bristle bristle;
     Vector3d axis_W = {0, 0, 0};  ///< of the friction in the previous step; zero without contact
     Vector3d next_axis_W = {0, 0, 0};  ///< of the friction at this stage
+
+    /// Return whether its points turn with a rotor.
+    bool turns() const { return link > 0 && !revolves; }
   };
   /// A touching point, for the extent of the contact patch.
   struct Point {

@@ -30,6 +30,9 @@ using PlacePoints = std::vector<Vector3d> (*)(const Collision& shape, const Vect
 std::vector<Vector3d> place_touching_points(const Collision& shape, const Vector3d& p,
                                             const Matrix3d& R);
 
+/// Maximum force of a point at the start of a flight, in weights of the vehicle.
+constexpr double largest_start_force = 10;
+
 /// Return for each shape, link by link, the stiffest springs that comply with
 /// largest_square_per_step even under all points at once in any attitude.
 std::vector<StableContact> stable_contacts(const Model& model, const Gyrostat& body,

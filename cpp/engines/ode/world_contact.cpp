@@ -4,15 +4,12 @@
 #include <cmath>
 #include <string>
 
+#include "contact_points.hpp"
 #include "contact_surface.hpp"
-#include "cylinder_pair.hpp"
 #include "ode_math.hpp"
 
 namespace quadcore {
 namespace {
-
-/// Number of points for which Gazebo 11 asks the collider of a pair.
-constexpr int most_points = 250;
 
 /// Bounds of a model that touches nothing.
 constexpr Bounds nowhere = {dInfinity, -dInfinity, dInfinity, -dInfinity, dInfinity, -dInfinity};
@@ -30,47 +27,6 @@ Bounds bounds_of(dGeomID geom) {
   Bounds box;
   dGeomGetAABB(geom, box.data());
   return box;
-}
-
-/// Put the deepest of the points from the last kept one on in its place, as Gazebo does.
-int keep_points(std::vector<dContactGeom>& points, int found, int most) {
-  if (found <= most) return found;
-  if (most == 0) return 0;
-  const auto last = points.begin() + most - 1;
-  *last = *std::max_element(
-      last, points.begin() + found,
-      [](const dContactGeom& one, const dContactGeom& other) { return one.depth < other.depth; });
-  return most;
-}
-
-bool are_sphere_and_mesh(dGeomID one, dGeomID other) {
-  const int first = dGeomGetClass(one), second = dGeomGetClass(other);
-  return std::min(first, second) == dSphereClass && std::max(first, second) == dTriMeshClass;
-}
-
-/// Merge the points of a sphere and a mesh into one, as Gazebo's ODE does: their mean position, and
-/// the sum s of their normals times their depths. The depth is |s| / sqrt(number of points).
-int merge_of_sphere(std::vector<dContactGeom>& points, int found) {
-  if (found < 2) return found;
-  Vector3d p_W = Vector3d::Zero(), s_W = Vector3d::Zero();
-  for (int i = 0; i < found; ++i) {
-    const dContactGeom& point = points[static_cast<std::size_t>(i)];
-    p_W += vec(point.pos);
-    s_W += point.depth * vec(point.normal);
-  }
-  p_W /= found;
-  points[0].depth = std::sqrt(s_W.squaredNorm() / found);
-  s_W.normalize();
-  std::copy_n(p_W.data(), 3, points[0].pos);
-  std::copy_n(s_W.data(), 3, points[0].normal);
-  return 1;
-}
-
-/// Find at most so many contacts of two shapes as there is room for, and return their number.
-int find_points(dGeomID one, dGeomID other, std::vector<dContactGeom>& points) {
-  if (are_cylinders(one, other)) return collide_cylinders(one, other, points[0]);
-  const int found = dCollide(one, other, most_points, points.data(), sizeof points[0]);
-  return are_sphere_and_mesh(one, other) ? merge_of_sphere(points, found) : found;
 }
 
 }  // namespace
@@ -243,7 +199,7 @@ void WorldContact::find_free_bounds(const std::vector<double>& unmoved) {
   }
 }
 
-/// A vehicle has moved if a free body has, or if there is none.
+/// A vehicle counts as moved once a free body has moved, and in a world without free bodies.
 MovingModel WorldContact::find_vehicle(Shapes& shapes) const {
   const auto is_new = [](const MovingModel& free) { return std::isinf(free.unmoved); };
   const auto end = moving_.begin() + static_cast<std::ptrdiff_t>(first_vehicle_ - still_);

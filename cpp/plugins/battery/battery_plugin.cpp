@@ -137,7 +137,7 @@ PluginDescriptor describe() {
               .above(0)
               .at_most(1),
           T::text("topic", "battery", "topic of voltage, current and charge"),
-          T::text("effectiveness", "effectiveness", "topic that the aerodynamics plugin reads"),
+          effectiveness_tag(),
           power_tag(),
           T::text("faults", "",
                   "topic of fractions that multiply the battery's own: use the effectiveness topic "

@@ -4,6 +4,7 @@
 #include "quadcore/plugin.hpp"
 #include "quadcore/ray.hpp"
 #include "shared/rotor_shares.hpp"
+#include "shared/rotor_tags.hpp"
 
 namespace quadcore::ceiling_effect {
 namespace {
@@ -118,14 +119,10 @@ PluginDescriptor describe() {
   return {
       "ceiling effect: increased thrust below obstacles",
       {
-          T::number("rotorRadius", "m", "0.075", "rotor radius R")
-              .above(0)
-              .from("Hsiao, Chirarattananon, T-MECH 24 (2019)"),
-          T::number("advanceRatioLoss", "", "1.1",
-                    "relative loss of thrust per advance ratio V/(n 2R), as in "
-                    "libdownwash_plugin.so")
-              .at_least(0),
-          T::text("effectiveness", "effectiveness", "topic that the aerodynamics plugin reads"),
+          rotor_radius_tag("rotor radius R").from("Hsiao, Chirarattananon, T-MECH 24 (2019)"),
+          advance_ratio_loss_tag("relative loss of thrust per advance ratio V/(n 2R), as in "
+                                 "libdownwash_plugin.so"),
+          effectiveness_tag(),
           T::joints("rotorJoints", "the rotors"),
       },
       {"ceiling_effect"},

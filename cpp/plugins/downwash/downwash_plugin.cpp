@@ -5,6 +5,7 @@
 #include "downwash/turbulent_jet.hpp"
 #include "quadcore/plugin.hpp"
 #include "shared/rotor_shares.hpp"
+#include "shared/rotor_tags.hpp"
 
 namespace quadcore::downwash {
 namespace {
@@ -139,16 +140,13 @@ PluginDescriptor describe() {
   return {
       "downwash: reduced thrust and wind in the wakes of other vehicles",
       {
-          T::number("rotorRadius", "m", "0.075",
-                    "rotor radius R, from which the wake of this vehicle follows")
-              .above(0)
+          rotor_radius_tag("rotor radius R, from which the wake of this vehicle follows")
               .from("Bauersfeld et al., RA-L (2025), (1)"),
-          T::number("advanceRatioLoss", "", "1.1",
-                    "relative loss of thrust, c, per advance ratio V/(n 2R) of a flow V against "
-                    "it; n in turns per second")
-              .at_least(0)
+          advance_ratio_loss_tag(
+              "relative loss of thrust, c, per advance ratio V/(n 2R) of a flow V against "
+              "it; n in turns per second")
               .from("APC Slow Flyer 10x4.7, UIUC Propeller Database"),
-          T::text("effectiveness", "effectiveness", "topic that the aerodynamics plugin reads"),
+          effectiveness_tag(),
           T::joints("rotorJoints", "the rotors"),
       },
       {"downwash"},

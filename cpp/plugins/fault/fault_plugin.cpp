@@ -174,7 +174,7 @@ PluginDescriptor describe() {
           T::text("topic", "fault",
                   "topic with a rotor (counted from 1), its effectiveness and its power, which "
                   "take effect at once"),
-          T::text("effectiveness", "effectiveness", "topic that the aerodynamics plugin reads"),
+          effectiveness_tag(),
           T::text("power", "power", "topic that the motor plugin reads"),
           T::number("detection", "s", "", "time from a fault until controllers receive it")
               .at_least(0)

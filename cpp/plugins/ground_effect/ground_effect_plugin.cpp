@@ -3,6 +3,7 @@
 
 #include "quadcore/plugin.hpp"
 #include "shared/rotor_shares.hpp"
+#include "shared/rotor_tags.hpp"
 
 namespace quadcore::ground_effect {
 namespace {
@@ -70,12 +71,11 @@ PluginDescriptor describe() {
   return {
       "ground effect: increased thrust near the ground",
       {
-          T::number("rotorRadius", "m", "0.075",
-                    "rotor radius R; T/T0 = 1/(1 - (R/4z)^2) at the height z of the rotor's centre "
-                    "of mass, constant below R/2")
-              .above(0)
+          rotor_radius_tag(
+              "rotor radius R; T/T0 = 1/(1 - (R/4z)^2) at the height z of the rotor's centre "
+              "of mass, constant below R/2")
               .from("Cheeseman, Bennett, ARC R&M 3021 (1955)"),
-          T::text("effectiveness", "effectiveness", "topic that the aerodynamics plugin reads"),
+          effectiveness_tag(),
           T::joints("rotorJoints", "the rotors"),
       },
       {"ground_effect"},

@@ -5,6 +5,12 @@
 
 namespace quadcore {
 
+/// Return the tag for the remaining thrust of each rotor, of plugins that change or read it.
+inline TagSpec effectiveness_tag() {
+  return TagSpec::text("effectiveness", "effectiveness",
+                       "topic that the aerodynamics plugin reads");
+}
+
 /// Return the tag for the remaining motor torque of plugins that drive rotors.
 inline TagSpec power_tag() {
   return TagSpec::text("power", "power",

@@ -16,7 +16,7 @@ struct Interval {
     end = std::min(end, to);
   }
   void clear() { intersect(INFINITY, -INFINITY); }
-  /// Return the first end that is ahead; infinite if there is none.
+  /// Return the first end in front of the origin; infinite if both lie behind it.
   double first() const {
     if (begin > end || end < 0) return INFINITY;
     return begin >= 0 ? begin : end;
