@@ -87,8 +87,12 @@ def main():
             print(f"    lost                     {lost:9.0f}")
         with node(model, "_real_time_factor:=0", "_lockstep:=true"):
             count, _, simulated, elapsed, *_ = map(float, probe("answer", 5).split())
-            print(f"in lockstep, a roscpp node answers each step: {count / elapsed:.0f} per s")
-            print(f"    real-time factor         {simulated / elapsed:9.1f}   at least 20")
+        with running(executable("ros_probe"), "echo", "8"):
+            exchanges, bare = map(float, probe("ask", 5).split())
+        print(f"in lockstep, a roscpp node answers each step: {count / elapsed:.0f} per s")
+        print(f"    real-time factor         {simulated / elapsed:9.1f}   at least 20")
+        print(f"two roscpp nodes without a simulator: {exchanges / bare:.0f} exchanges per s")
+        print(f"    lockstep over that       {count / elapsed / (exchanges / bare):9.2f}")
 
 
 main()

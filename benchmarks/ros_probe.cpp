@@ -4,6 +4,10 @@
 //                              median, 99 %, longest
 //   ros_probe answer SECONDS   the same, with a command for each message
 //   ros_probe latency SAMPLES  time from a vel_cmd to the odometry that reflects it, us, one a line
+//   ros_probe echo SECONDS     answers each message on odom by a command, and counts nothing
+//   ros_probe ask SECONDS      without a simulator: sends odometry to an echo, waits for its
+//   command,
+//                              and sends the next: exchanges, elapsed seconds
 
 #include <nav_msgs/Odometry.h>
 #include <ros/callback_queue.h>
@@ -138,15 +142,62 @@ class Latency {
   double last_gain_ = 0;
 };
 
+/// What an exchange costs in roscpp alone, with messages of the simulator's types and sizes: the
+/// speed that no simulator in lockstep can exceed.
+class BareExchange {
+ public:
+  void echo(ros::NodeHandle& nh, double seconds) {
+    const ros::Publisher publisher =
+        nh.advertise<std_msgs::Float64MultiArray>("quadrotor/vel_cmd", 1);
+    std_msgs::Float64MultiArray command;
+    command.data.assign(4, 0.0);
+    const ros::Subscriber subscriber = nh.subscribe<nav_msgs::Odometry>(
+        "odom", 1, [&](const nav_msgs::Odometry::ConstPtr&) { publisher.publish(command); },
+        ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(seconds);
+    while (ros::WallTime::now() < end)
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
+  }
+
+  void ask(ros::NodeHandle& nh, double seconds) {
+    const ros::Publisher publisher = nh.advertise<nav_msgs::Odometry>("odom", 1);
+    long answers = 0;
+    const ros::Subscriber subscriber = nh.subscribe<std_msgs::Float64MultiArray>(
+        "quadrotor/vel_cmd", 1,
+        [&answers](const std_msgs::Float64MultiArray::ConstPtr&) { ++answers; },
+        ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+    while (publisher.getNumSubscribers() == 0 || subscriber.getNumPublishers() == 0)
+      ros::WallDuration(0.01).sleep();
+    nav_msgs::Odometry odometry;
+    odometry.header.frame_id = "world";
+    odometry.child_frame_id = "drone";
+    const Clock::time_point start = Clock::now();
+    double elapsed = 0;
+    while (elapsed < seconds) {
+      const long before = answers;
+      publisher.publish(odometry);
+      while (answers == before && elapsed < seconds) {
+        ros::getGlobalCallbackQueue()->callOne(ros::WallDuration(0.1));
+        elapsed = std::chrono::duration<double>(Clock::now() - start).count();
+      }
+    }
+    std::printf("%ld %.6f\n", answers, elapsed);
+  }
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "probe");
   if (argc != 3) return 2;
-  ros::NodeHandle nh;
   const std::string mode = argv[1];
+  ros::init(argc, argv, "probe_" + mode);
+  ros::NodeHandle nh;
   if (mode == "count" || mode == "answer") {
     Counter().run(nh, std::atof(argv[2]), mode == "answer");
+  } else if (mode == "echo") {
+    BareExchange().echo(nh, std::atof(argv[2]));
+  } else if (mode == "ask") {
+    BareExchange().ask(nh, std::atof(argv[2]));
   } else {
     Latency().run(nh, std::atoi(argv[2]));
   }
