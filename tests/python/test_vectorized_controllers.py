@@ -10,13 +10,13 @@ import quadcore as qc
 from quadcore.simulation.flight_plan import FlightPlan
 from quadcore.studies.measured_flight import fly_and_measure, fly_together
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "matrix_policy"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 @pytest.fixture
 def policy(monkeypatch):
     """The policy of the example; `rows` lists the number of rows of each call."""
-    monkeypatch.syspath_prepend(str(EXAMPLE))
+    monkeypatch.syspath_prepend(str(EXAMPLES / "matrix_policy"))
     from matrix_policy import Policy
 
     class Listing(Policy):
@@ -28,6 +28,20 @@ def policy(monkeypatch):
             return super().__call__(t, state, reference)
 
     return Listing()
+
+
+@pytest.fixture
+def network(monkeypatch, tmp_path):
+    """The policy in ONNX Runtime, newly trained."""
+    onnx = pytest.importorskip("onnx", reason="needs onnx, which pip has")
+    pytest.importorskip("onnxruntime", reason="needs onnxruntime, which pip has")
+    monkeypatch.syspath_prepend(str(EXAMPLES / "onnx_policy"))
+    monkeypatch.chdir(tmp_path)
+    import onnx_policy
+    import train_policy
+
+    onnx.save(train_policy.make_model(*train_policy.imitate()), onnx_policy.FILE)
+    return onnx_policy.Policy()
 
 
 def make_plans(policy, n=20, **options):
@@ -60,6 +74,23 @@ def test_seeds_side_by_side_have_the_errors_of_single_flights(policy):
         for name, value in outcome.measures.items():
             assert value == pytest.approx(alone.measures[name], rel=1e-9, abs=1e-12, nan_ok=True)
         assert outcome.updates == alone.updates
+
+
+def test_seeds_of_a_network_have_the_errors_of_single_flights(network):
+    plans = make_plans(network)
+    together = fly_together(describe(plans), 100)
+    for described, outcome in zip(describe(plans), together):
+        alone = fly_and_measure(described, 100)
+        assert outcome.failure == alone.failure == ""
+        assert 0 < outcome.measures["max_position"] < 0.01
+        for name in ("rms_position", "max_position", "final_position"):
+            assert abs(outcome.measures[name] - alone.measures[name]) < 1e-12
+
+
+def test_a_network_without_its_file_is_refused(network):
+    Path("policy.onnx").unlink()
+    with pytest.raises(qc.InputError, match=r"^policy\.onnx: there is no such file\. Run train_"):
+        make_plans(network)[0].fly()
 
 
 def test_evaluate_calls_the_controller_once_for_all_seeds(policy, tmp_path):
