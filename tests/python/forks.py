@@ -19,12 +19,22 @@ import socket
 import sys
 
 IMPORTED = (
-    "matplotlib.backends.backend_agg",
-    "matplotlib.figure",
     "printed",
     "quadcore.__main__",
+    "quadcore.report.log_plots",
+    "quadcore.report.page",
+    "quadcore.studies.compare.output",
+    "quadcore.studies.compare.plots",
+    "quadcore.studies.evaluate.output",
+    "quadcore.studies.evaluate.plots",
+    "quadcore.studies.fit.output",
+    "quadcore.studies.sweep.output",
+    "quadcore.studies.sweep.plots",
+    "quadcore.studies.tune.output",
     "scipy.linalg",
     "scipy.optimize",
+    "scipy.signal",
+    "scipy.stats",
 )
 
 

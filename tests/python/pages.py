@@ -12,7 +12,8 @@ sees, tell what else becomes of it:
     <!-- output: 0.02 -->  the same, with numbers within 2 %; more of them continue the first
 
 Sweeps fly little, other flights are cut short except in tutorials, in READMEs and where the output
-is shown, and programs of systems that are not here are stood in for (`stand_in.py`).
+is shown. An output that lists no plots is one of a command that draws none. Programs of systems
+that are not here are stood in for (`stand_in.py`).
 """
 
 from __future__ import annotations
@@ -47,6 +48,7 @@ BLOCK = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 NOT_RUN = re.compile(r"text|math|\{")
+PLOTS = re.compile(r"\.png|figures")
 ELSEWHERE = "roslaunch rosrun rostopic rosservice rosparam rosbag rospack catkin_make git "
 ELSEWHERE += "sudo pip jupytext jupyter"
 PIECE = """<robot name="piece" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -114,7 +116,10 @@ def run(page, folder):
             steps.append(text or block["before"])
         elif block["kind"] == "run" or language == "sh":
             shell = text or block["before"]
-            whole = ", QUADCORE_SHORT='no'" if after["marker"] == "output" else ""
+            whole = ""
+            if after["marker"] == "output":
+                short = "no" if PLOTS.search(after["text"]) else "plots"
+                whole = f", QUADCORE_SHORT={short!r}"
             steps.append(f"_shell('bash', '-eo', 'pipefail', '-c', {shell!r}{whole})")
         elif language in ("octave", "matlab"):
             steps.append(f"_octave({text!r})")

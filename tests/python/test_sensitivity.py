@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import quadcore as qc
+from quadcore.studies.ranking import rank_values
 from quadcore.studies.sweep.pawn import compute_pawn
 from quadcore.studies.sweep.plots import _draw_surface, _leading_axes
 
@@ -78,3 +79,9 @@ def test_the_surface_of_an_axis_with_a_narrow_range_has_its_label():
     label = figure.axes[0].yaxis.label
     assert label.get_text() == "frame.mass"
     assert label.get_window_extent().x0 > 0
+
+
+@pytest.mark.parametrize("values", [[], [3, 1, 1, np.inf, np.inf, 1, -np.inf, 2], [7, 7]])
+def test_ranks_are_those_of_scipy(values):
+    expected = pytest.importorskip("scipy.stats").rankdata(values)
+    assert rank_values(values).tolist() == expected.tolist()

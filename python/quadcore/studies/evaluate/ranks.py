@@ -12,6 +12,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
+from ..ranking import rank_values
 from ..tracking_metrics import EQUAL
 from .best_controllers import CELL, RANKED
 
@@ -52,8 +53,6 @@ def rank_controllers(groups: Sequence[Mapping[str, Any]]) -> Ranks:
     groups
         Rows of `Evaluation.groups`.
     """
-    from scipy.stats import rankdata
-
     names = list(dict.fromkeys(group["controller"] for group in groups))
     cells: Dict[Any, Dict[str, float]] = {}
     for group in groups:
@@ -65,7 +64,7 @@ def rank_controllers(groups: Sequence[Mapping[str, Any]]) -> Ranks:
     errors = [[cell[name] for name in names] for cell in cells.values() if len(cell) == len(names)]
     if not errors:
         return Ranks(names, [math.nan] * len(names), 0, math.nan, math.nan, {})
-    ranks = np.array([rankdata(row) for row in errors])
+    ranks = np.array([rank_values(row) for row in errors])
     means = ranks.mean(axis=0)
     p_value, agreement = _test_friedman(ranks)
     order = np.argsort(means, kind="stable")

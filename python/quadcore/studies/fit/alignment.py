@@ -106,7 +106,7 @@ def _is_significant(
     block : ndarray (n,)
         Number of the block of each vector.
     """
-    from scipy.stats import f
+    from scipy.special import fdtri  # scipy.stats is slow to import
 
     if np.linalg.norm(turn) < _SMALLEST:
         return False
@@ -120,7 +120,7 @@ def _is_significant(
     np.add.at(scores, place, np.cross(turned, ours - turned))
     scale = count / (count - 1)
     size = turn @ normal @ np.linalg.solve(scale * scores.T @ scores, normal @ turn)
-    limit = 3 * (count - 1) / (count - 3) * f.ppf(_CERTAIN, 3, count - 3)
+    limit = 3 * (count - 1) / (count - 3) * fdtri(3, count - 3, _CERTAIN)
     return bool(size > limit)
 
 

@@ -145,14 +145,14 @@ def compute_deviations(
     x
         Estimated coordinates.
     """
-    from scipy.stats import t
+    from scipy.special import stdtrit  # scipy.stats is slow to import
 
     search = halves[0].search
     moving = free & _list_inner(x, *search.find_bounds(len(x)))
     prior = search.find_prior(len(x))
     equations = _make_equations(halves, x, moving)
     covariance = _solve(equations, x - start, prior)[1]
-    covariance *= (t.ppf(0.975, equations.blocks - 1) / _NORMAL) ** 2
+    covariance *= (stdtrit(equations.blocks - 1, 0.975) / _NORMAL) ** 2
     return _name_deviations(search, x, free, covariance, prior)
 
 

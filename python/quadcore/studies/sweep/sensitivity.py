@@ -16,6 +16,7 @@ import numpy as np
 
 from ...support.optional_packages import require_package
 from ..distributions import make_unit_problem
+from ..ranking import rank_values
 from .pawn import compute_pawn
 from .plan import AnyPlan
 
@@ -107,12 +108,10 @@ def list_numeric_axes(plan: AnyPlan, columns: Columns) -> List[str]:
 
 def _rank_correlation(axis: np.ndarray, values: np.ndarray) -> float:
     """Compute the rank correlation of the finite values; NaN for fewer than three."""
-    from scipy.stats import rankdata
-
     known = np.isfinite(values)
     if known.sum() < 3:
         return math.nan
-    a, b = (rankdata(each[known]) for each in (axis, values))
+    a, b = (rank_values(each[known]) for each in (axis, values))
     a, b = a - a.mean(), b - b.mean()
     size = math.sqrt(float((a @ a) * (b @ b)))
     return float(a @ b) / size if size > 0 else math.nan
