@@ -13,6 +13,7 @@ import time
 import unittest
 import xmlrpc.client
 from contextlib import contextmanager, suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import Callable
 
@@ -33,9 +34,15 @@ LONG = 180.0
 HOVER = [475.0, -475.0, 475.0, -475.0]  # rad/s, a little more than the weight
 
 
+@lru_cache(None)
+def shipped_description() -> str:
+    """URDF of the shipped quadrotor at sim_slow 1."""
+    return load_description("quadrotor", {"sim_slow": "1"}).text
+
+
 def description(**tags: str) -> str:
-    """URDF of the shipped quadrotor at sim_slow 1, with other texts in some plugin tags."""
-    text = load_description("quadrotor", {"sim_slow": "1"}).text
+    """The same with other texts in some plugin tags."""
+    text = shipped_description()
     for tag, value in tags.items():
         text, count = re.subn(f"<{tag}>[^<]*<", f"<{tag}>{value}<", text)
         assert count > 0, tag
@@ -49,6 +56,7 @@ def folder_of(test: unittest.TestCase) -> Path:
     return Path(folder.name)
 
 
+@lru_cache(None)
 def executable(name: str) -> str:
     """Path of a node of this package."""
     return roslib.packages.find_node("quadcore", name)[0]

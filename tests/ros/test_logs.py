@@ -64,7 +64,7 @@ class TestLogs(unittest.TestCase):
 
     def test_who_comes_to_see_while_a_log_is_written_does_not_end_it(self):
         log = self.folder / "flight.mat"
-        with flight("_paused:=true", f"_log:={log}") as node:
+        with flight("_paused:=true", "_engine:=eigen", f"_log:={log}") as node:
             step(100000)
             node.process.send_signal(signal.SIGINT)
             while node.process.poll() is None:

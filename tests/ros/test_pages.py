@@ -63,7 +63,9 @@ class TestPages(unittest.TestCase):
                 [file] = roslib.packages.find_resource("quadcore", name)
                 given = {argument.partition(":=")[0] for argument in arguments}
                 self.assertLessEqual(given, set(get_args([file])))
-                config = roslaunch.config.load_config_default([(file, arguments)], None)
+                config = roslaunch.config.ROSLaunchConfig()
+                roslaunch.xmlloader.XmlLoader().load(file, config, argv=arguments, verbose=False)
+                config.assign_machines()
                 self.assertEqual(config.config_errors, [])
                 for node in config.nodes:
                     if node.package not in NOT_EVERYWHERE:

@@ -13,10 +13,10 @@ from nav_msgs.msg import Odometry
 
 class TestPid(unittest.TestCase):
     def test_it_flies_the_spiral(self):
-        topics = Recording("/controller/error", Vector3Stamped), Recording("/odom", Odometry)
-        with topics[0] as error, topics[1] as odometry:
+        with Recording("/controller/error", Vector3Stamped) as error:
             errors = error.wait(lambda m: m and m[-1].header.stamp.to_sec() > 30)
-            message = odometry.wait(lambda m: m[-1].header.stamp.to_sec() > 30)[-1]
+            with Recording("/odom", Odometry) as odometry:
+                message = odometry.wait(lambda m: m[-1].header.stamp.to_sec() > 30)[-1]
         late = [e.vector for e in errors if e.header.stamp.to_sec() > 25]
         # What the PID of section 6.2 reaches with a gain that flies is 28 mm, in the long run.
         self.assertLess(max(np.linalg.norm([e.x, e.y, e.z]) for e in late), 0.035)

@@ -25,14 +25,14 @@ def hovers(messages):
 
 class TestRotorsHover(unittest.TestCase):
     def test_six_vehicles_take_off_and_hover_on_one_clock(self):
-        flights = {name: Recording(f"/{name}/ground_truth/odometry", Odometry) for name in ROTORS}
-        speeds = {name: Recording(f"/{name}/motor_speed", Actuators) for name in ROTORS}
-        for i, (name, flight) in enumerate(flights.items()):
-            last = flight.wait(hovers, 5 * harness.LONG)[-1]
+        for i, (name, rotors) in enumerate(ROTORS.items()):
+            with Recording(f"/{name}/ground_truth/odometry", Odometry) as flight:
+                last = flight.wait(hovers, 5 * harness.LONG)[-1]
             self.assertAlmostEqual(last.pose.pose.position.y, i, delta=0.1)
             self.assertEqual(last.child_frame_id, f"{name}/base_link")
-            velocities = speeds[name].wait_for_count(1)[-1].angular_velocities
-            self.assertEqual(len(velocities), ROTORS[name])
+            with Recording(f"/{name}/motor_speed", Actuators) as speeds:
+                velocities = speeds.wait_for_count(1)[-1].angular_velocities
+            self.assertEqual(len(velocities), rotors)
         self.assertEqual(len(harness.publishers("/clock")), 1)
 
         # To clients of gazebo_ros they are models of one world.

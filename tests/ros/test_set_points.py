@@ -102,8 +102,8 @@ class TestSetPoints(unittest.TestCase):
                 if until(message):
                     return message
             looked = len(messages)
-            self.assertLess(pieces, 600, "a minute flown in vain")
-            flown = step(100)
+            self.assertLess(pieces, 240, "a minute flown in vain")
+            flown = step(250)
             pieces += 1
             self.odometry.wait(lambda m, flown=flown: m and m[-1].header.stamp == flown)
 
