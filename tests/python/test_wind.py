@@ -36,6 +36,21 @@ def test_a_constant_wind_is_the_worlds_bit_for_bit(engine, hangar):
     assert np.abs(still.position[-1] - by_world.state.position).max() > 0.01
 
 
+def test_a_message_replaces_the_mean_wind(hangar):
+    options = {"spawn": (0, 0, 5, 0.3, -0.2, 1), "engine": "eigen"}
+    by_tag = hangar(add_wind(make_motored(), velocity="3.1 -1.7 0.43", shear="power"), G, **options)
+    by_message = hangar(add_wind(make_motored(), velocity="1 1 1", shear="power"), G, **options)
+    by_message.publish("wind_velocity", [3.1, -1.7, 0.43])
+    assert fly(by_tag, 500).table.tobytes() == fly(by_message, 500).table.tobytes()
+    by_message.publish("wind_velocity", [0, 0, 0])
+    by_message.step()
+    assert measure_wind(by_message).tolist() == [0, 0, 0]
+    by_message.reset(0)
+    by_message.step()
+    height = by_message.state.position[2]
+    assert np.allclose(measure_wind(by_message), (height / 6.096) ** (1 / 7), rtol=1e-12)
+
+
 def test_a_gust_keeps_the_fourth_order_of_eigen(hangar):
     gusts = "9 -6 4 0.128 0.128  -3 2 1 0.192 0.128"  # in whole steps
     air = {**CHAPTER2, "inducedDragCoeff": 0.1, "parasiticDragCoeff": 0.03}

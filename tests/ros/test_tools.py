@@ -18,6 +18,7 @@ import rospy
 import yaml
 from dynamic_reconfigure import DynamicReconfigureCallbackException
 from dynamic_reconfigure.client import Client
+from geometry_msgs.msg import Vector3Stamped
 from harness import Process, Recording, description, flight, outcome, step
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -120,6 +121,46 @@ class TestTools(unittest.TestCase):
             harness.wait_until(lambda: not sliders.get_configuration()["paused"])
             self.assertEqual(sliders.get_configuration()["real_time_factor"], 0.5)
             sliders.close()
+
+    def set_wind(self, *arguments, urdf):
+        """Air velocity of a paused flight, before and after the slider has set its y."""
+        with flight(PAUSED, *arguments, urdf=urdf) as node:
+            sliders = Client("/quadcore", timeout=harness.LONG)
+            before = sliders.get_configuration()
+            after = sliders.update_configuration({"wind_y": -2.5})
+            topic = "/world_wind" if arguments else "/wind"
+            with Recording(topic, Vector3Stamped) as wind:
+                step(1)
+                value = wind.wait(lambda m: m[-1].header.stamp.to_nsec() == 1_000_000)[-1].vector
+            harness.call("/gazebo/reset_world")  # the slider follows
+            harness.wait_until(lambda: sliders.get_configuration()["wind_y"] == before["wind_y"])
+            sliders.close()
+            node.end()
+        axes = [[values[f"wind_{axis}"] for axis in "xyz"] for values in (before, after)]
+        return (*axes, [value.x, value.y, value.z])
+
+    def test_sliders_set_the_mean_wind(self):
+        plugin = (
+            '<plugin name="wind" filename="libwind_plugin.so"><velocity>3 1 0</velocity></plugin>'
+        )
+        urdf = description(dragModel="chapter2")
+        windy = urdf.replace("</robot>", f"<gazebo>{plugin}</gazebo></robot>")
+        world = harness.folder_of(self) / "windy.world"
+        wind = "<wind><linear_velocity>3 1 0</linear_velocity></wind>"
+        world.write_text(f"<sdf version='1.6'><world name='windy'>{wind}</world></sdf>")
+        for given, model in (((), windy), ((f"_world:={world}",), urdf)):
+            before, after, air = self.set_wind(*given, urdf=model)
+            self.assertEqual((before, after, air), ([3, 1, 0], [3, -2.5, 0], [3, -2.5, 0]))
+
+    def test_a_flight_without_wind_refuses_one(self):
+        with flight(PAUSED) as node:
+            sliders = Client("/quadcore", timeout=harness.LONG)
+            with self.assertRaises(DynamicReconfigureCallbackException):
+                sliders.update_configuration({"wind_x": 1})
+            self.assertEqual(sliders.update_configuration({"wind_x": 0})["wind_x"], 0)
+            sliders.close()
+            node.end()
+        self.assertIn("this flight has no wind. Add libwind_plugin.so to the model", node.error)
 
     def test_sliders_change_the_gains_of_a_controller(self):
         hold = ("_law:=pd_compensated", "_reference:=hover")

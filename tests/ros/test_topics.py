@@ -7,7 +7,7 @@ import harness
 import numpy as np
 import rosgraph
 import rospy
-from geometry_msgs.msg import Pose, Quaternion, Twist
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist
 from harness import HOVER, Process, Recording, commander, description, flight
 from nav_msgs.msg import Odometry, Path
 from quadcore.srv import SetState
@@ -163,6 +163,19 @@ class TestTopics(unittest.TestCase):
                     stamp = message.clock if kind is Clock else message.header.stamp
                     seen = 0 if kind is JointState else 7000000  # those go out 50 times a second
                     self.assertEqual(stamp.to_nsec(), seen)
+
+    def test_a_state_that_is_set_in_a_pause_is_in_tf_with_a_stamp_of_its_own(self):
+        with flight("_paused:=true"), Recording("/tf", TFMessage) as tf:
+            tf.wait_for_count(1)
+            set_state = rospy.ServiceProxy("/quadcore/set_state", SetState)
+            for height in (5, 6):
+                set_state(Pose(Point(0, 0, height), Quaternion(w=1)), Twist(), [])
+            last = tf.wait(lambda m: m[-1].transforms[0].transform.translation.z == 6)
+            harness.step(1)
+            known = tf.wait(lambda m: len(m) > len(last))
+        times = [m.transforms[0].header.stamp.to_nsec() for m in known]
+        self.assertEqual(times, sorted(set(times)))
+        self.assertEqual(times[-1], 1_000_000)
 
     def test_the_rotors_frames_are_seen_late_too(self):
         with flight("_paused:=true", "_rotor_tf:=true"):

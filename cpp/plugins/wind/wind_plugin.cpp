@@ -12,8 +12,9 @@ constexpr std::size_t turbulence_numbers = sizeof(Turbulence) / sizeof(double);
 static_assert(std::is_trivially_copyable_v<Turbulence> &&
               turbulence_numbers * sizeof(double) == sizeof(Turbulence));
 
-/// State: the turbulence of this step, and the filters.
-enum Memory { kAir, kFilters = kAir + 3 };
+/// State: whether a message has set the mean wind, the mean wind that it set, the turbulence of
+/// this step, and the filters.
+enum Memory { kIsSet, kSet, kAir = kSet + 3, kFilters = kAir + 3 };
 
 /// Mean wind, gusts and turbulence at the frame's position.
 class WindPlugin final : public Plugin {
@@ -28,7 +29,10 @@ class WindPlugin final : public Plugin {
         airspeed_(setup.parameters.number("airspeed")),
         topic_(setup.topics.publishes(
             setup.parameters.text("topic"),
-            messages::kind_of<messages::Vector>(messages::WindSpeed::meaning))) {
+            messages::kind_of<messages::Vector>(messages::WindSpeed::meaning))),
+        velocity_topic_(setup.topics.takes(
+            setup.parameters.text("velocityTopic"),
+            messages::kind_of<messages::Vector>("mean velocity of the air, world axes, m/s"))) {
     if (!shear_.acts() || !velocity_W_.isZero(0)) return;
     setup.warnings.push_back(
         "<shear> has no effect while <velocity> is 0; write the wind at <referenceHeight>");
@@ -37,12 +41,17 @@ class WindPlugin final : public Plugin {
   std::size_t state_size() const override { return kFilters + turbulence_numbers; }
 
   void update(const Sample& sample, PluginState state) const override {
+    if (sample.topics[velocity_topic_].count > 0) {
+      state[kIsSet] = 1;
+      state.segment<3>(kSet) = sample.topics.read<messages::Vector>(velocity_topic_).value;
+    }
     if (!turbulent_) return;
     Turbulence turbulence;
     std::memcpy(&turbulence, state.data() + kFilters, sizeof turbulence);
     if (turbulence.begun == 0) {
       const Kinematics& k = sample.kinematics;
-      turbulence.begin(scales_, mean_W(k) - k.R_WF * k.v_WF_F, airspeed_, sample.dt, sample.seed);
+      turbulence.begin(scales_, mean_W(k, {state.data(), state.size()}) - k.R_WF * k.v_WF_F,
+                       airspeed_, sample.dt, sample.seed);
     } else {
       turbulence.advance(sample.seed);
     }
@@ -51,7 +60,7 @@ class WindPlugin final : public Plugin {
   }
 
   void air(const Kinematics& kinematics, ConstPluginState state, Vector3d& v_WA_W) const override {
-    v_WA_W += mean_W(kinematics);
+    v_WA_W += mean_W(kinematics, state);
     for (const Gust& gust : gusts_) gust.blow(kinematics.time, v_WA_W);
     if (turbulent_) v_WA_W += state.segment<3>(kAir);
   }
@@ -63,18 +72,20 @@ class WindPlugin final : public Plugin {
   }
 
  private:
-  Vector3d mean_W(const Kinematics& kinematics) const {
-    if (!shear_.acts()) return velocity_W_;
-    return shear_.factor(kinematics.p_WF.z()) * velocity_W_;
+  Vector3d mean_W(const Kinematics& kinematics, ConstPluginState state) const {
+    const Vector3d velocity_W = state[kIsSet] != 0 ? Vector3d(state.segment<3>(kSet)) : velocity_W_;
+    if (!shear_.acts()) return velocity_W;
+    return shear_.factor(kinematics.p_WF.z()) * velocity_W;
   }
 
-  Vector3d velocity_W_;  ///< m/s
+  Vector3d velocity_W_;  ///< until a message sets another one [m/s]
   Shear shear_;
   std::vector<Gust> gusts_;
   bool turbulent_;
   DrydenScales scales_;
   double airspeed_;  ///< m/s
   std::size_t topic_;
+  std::size_t velocity_topic_;
 };
 
 PluginDescriptor describe() {
@@ -116,6 +127,8 @@ PluginDescriptor describe() {
                     "the mean wind at the start of the flight applies if it is larger")
               .above(0),
           T::text("topic", "wind", "topic of the air velocity, world axes"),
+          T::text("velocityTopic", "wind_velocity",
+                  "topic of a mean velocity that replaces <velocity>"),
       },
       {},
       create<WindPlugin>,

@@ -76,8 +76,8 @@ ControllerSettings read_controller_settings(const ros::NodeHandle& nh) {
 
   Plant plant = read_plant(flown);
   read_description(nh, plant);
-  Simulation simulation =
-      make_simulation(plant, read_world_of(plant), [&guests](const Model&) { return guests; });
+  Simulation simulation = make_simulation(plant, read_world_of(plant),
+                                          [&guests](const Model&, World&) { return guests; });
   const LoadedPlugin* const shape = find_writer(simulation, reference_topic);
   const LoadedPlugin* const controller = find_writer(simulation, Simulation::command_topic);
   ControllerSettings settings{control::ControllerSetup(controller->parameters),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "messages.hpp"
 #include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
@@ -22,16 +23,6 @@ void check_size(double size, double max, const char* what, const char* unit) {
                 "The %s of %g %s is not physical for this vehicle. Give at most %.3g %s.", what,
                 size, unit, max, unit);
   throw InputError(text);
-}
-
-std::string format_vector(const Vector3d& vector) {
-  std::string text;
-  for (int i = 0; i < 3; ++i) {
-    char number[40];
-    std::snprintf(number, sizeof number, "%s%.17g", i ? " " : "", vector[i]);
-    text += number;
-  }
-  return text;
 }
 
 }  // namespace

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <string>
 
 #include "quadcore/plugin/spatial.hpp"
+#include "quadcore/text.hpp"
 
 /// \file
 /// Conversions between numbers and parts of messages.
@@ -44,6 +46,16 @@ void set_vector(Vector& vector, const double* values) {
 inline bool is_unit(const Quaterniond& q) {
   constexpr double roundness = 1e-3;  // tolerance of the length
   return std::abs(q.norm() - 1) <= roundness;
+}
+
+/// Returns the numbers of a vector as the text of a plugin's tag.
+inline std::string format_vector(const Vector3d& vector) {
+  std::string text;
+  for (const double* number = vector.data(); number != vector.data() + 3; ++number) {
+    if (!text.empty()) text += ' ';
+    append_shortest(*number, text);
+  }
+  return text;
 }
 
 template <class Vector>

@@ -8,11 +8,13 @@
 namespace quadcore::node {
 
 Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
-                   const Simulation& simulation, std::vector<CommandTopic> command_topics,
-                   std::unique_ptr<LogPerFlight> log, ClockFollower* follower)
+                   MeanWind& wind, const Simulation& simulation,
+                   std::vector<CommandTopic> command_topics, std::unique_ptr<LogPerFlight> log,
+                   ClockFollower* follower)
     : broadcast_(broadcast),
       inlets_(inlets),
       wrenches_(wrenches),
+      wind_(wind),
       command_topics_(std::move(command_topics)),
       log_(std::move(log)),
       follower_(follower),
@@ -21,6 +23,7 @@ Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wr
 void Listener::observe(const Simulation& simulation, bool jumped) {
   if (log_) log_->add(simulation, jumped);
   if (log_ && !log_->error().empty()) ROS_ERROR_ONCE("%s", log_->error().c_str());
+  wind_.note(simulation);
   broadcast_.send(simulation, jumped);
   if (follower_) follower_->reached(simulation.time());
   // Warnings may appear during a flight; a reset removes them.

@@ -10,6 +10,7 @@
 #include "flight_thread.hpp"
 #include "gazebo_wrenches.hpp"
 #include "log_per_flight.hpp"
+#include "mean_wind.hpp"
 #include "topic_inlets.hpp"
 #include "warning_limiter.hpp"
 
@@ -20,7 +21,7 @@ class Listener final : public FlightListener {
  public:
   /// \param log       log to write; null = no log
   /// \param follower  gets each step; null = this node leads the clock
-  Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
+  Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches, MeanWind& wind,
            const Simulation& simulation, std::vector<CommandTopic> command_topics,
            std::unique_ptr<LogPerFlight> log, ClockFollower* follower);
 
@@ -42,6 +43,7 @@ class Listener final : public FlightListener {
   Broadcast& broadcast_;
   TopicInlets& inlets_;
   GazeboWrenches& wrenches_;
+  MeanWind& wind_;
   const std::vector<CommandTopic> command_topics_;
   const std::unique_ptr<LogPerFlight> log_;
   ClockFollower* const follower_;

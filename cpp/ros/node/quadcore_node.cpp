@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "listener.hpp"
 #include "master_check.hpp"
 #include "master_watch.hpp"
+#include "mean_wind.hpp"
 #include "model_claim.hpp"
 #include "no_delay.hpp"
 #include "parameter_watch.hpp"
@@ -71,9 +73,12 @@ Simulation make_vehicle(const Settings& settings, const World& world) {
       ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Debug)) {
     ros::console::notifyLoggerLevelsChanged();
   }
-  Simulation simulation = make_simulation(settings.plant, world, [](const Model& model) {
-    return std::vector<PluginElement>{GazeboWrenches::plugin(model)};
-  });
+  Simulation simulation =
+      make_simulation(settings.plant, world, [](const Model& model, World& replaced) {
+        std::vector<PluginElement> plugins = MeanWind::replace_wind(replaced, model);
+        plugins.push_back(GazeboWrenches::plugin(model));
+        return plugins;
+      });
   if (!settings.joint_angles.empty()) turn_rotors(simulation, settings.joint_angles);
   log_description(simulation);
   return simulation;
@@ -137,6 +142,8 @@ class Node {
                           flight_.set_real_time_factor(to_non_negative("real_time_factor", value));
                         }});
     }
+    const std::vector<Adjustable> wind = wind_.adjustables(flight_);
+    values.insert(values.end(), wind.begin(), wind.end());
     return values;
   }
 
@@ -151,12 +158,17 @@ class Node {
     return parameters;
   }
 
-  void send_gazebo_states() {
+  /// Runs `send` between two steps, for a new subscriber.
+  void send_between_steps(const std::function<void(const Simulation&)>& send) {
     try {
-      flight_.run_between_steps([this](const Simulation& now) { gazebo_states_.send(now); });
+      flight_.run_between_steps(send);
     } catch (const InputError&) {
       // The flight ends; a new subscriber gets no message.
     }
+  }
+
+  void send_gazebo_states() {
+    send_between_steps([this](const Simulation& now) { gazebo_states_.send(now); });
   }
 
   /// Connects the node: callbacks first, then the services, because a node that has waited for a
@@ -192,6 +204,10 @@ class Node {
         neighbours_->update(leader_->spaces(), gazebo_states_.asks_neighbours());
       }
       if (follower_) follower_->report_progress(flight_.report());
+      if (broadcast_.has_unserved_subscriber()) {
+        send_between_steps(
+            [this](const Simulation& now) { broadcast_.serve_new_subscribers(now); });
+      }
       const FlightReport report = flight_.report();
       const bool is_alarm = report.commands_stopped && !stopped;  // at once
       stopped = report.commands_stopped;
@@ -240,9 +256,11 @@ class Node {
   std::vector<CommandTopic> topics_ = find_command_topics(nh_, settings_.plant, simulation_);
   TopicInlets inlets_{nh_, simulation_, simulated_topics(), settings_.flight.lockstep};
   GazeboWrenches wrenches_;
+  MeanWind wind_{simulation_};
   Listener listener_{broadcast_,
                      inlets_,
                      wrenches_,
+                     wind_,
                      simulation_,
                      topics_,
                      settings_.log.empty()

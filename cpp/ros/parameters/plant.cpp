@@ -106,12 +106,12 @@ World read_world_of(const Plant& plant) {
   return world;
 }
 
-Simulation make_simulation(const Plant& plant, const World& world, const Guests& guests) {
+Simulation make_simulation(const Plant& plant, World world, const Guests& guests) {
   Model model = read_model(plant.model, plant.ignore);
   check_ignored(plant.ignore, {&model.ignored_elements, &world.ignored_elements});
   SimulationOptions options = plant.simulation;
   choose_drag(plant.drag, model, options.parameters);
-  for (const PluginElement& guest : guests(model)) model.plugins.push_back(guest);
+  for (const PluginElement& guest : guests(model, world)) model.plugins.push_back(guest);
   return {std::move(model), world, options};
 }
 

@@ -37,13 +37,13 @@ void read_description(const ros::NodeHandle& nh, Plant& plant);
 /// Resolves a relative path from `folder`.
 std::string resolve_path(std::string folder, const std::string& path);
 
-/// Returns additional plugins for a model.
-using Guests = std::function<std::vector<PluginElement>(const Model&)>;
+/// Returns additional plugins for a model. A plugin may replace a property of the world.
+using Guests = std::function<std::vector<PluginElement>(const Model&, World&)>;
 
 /// Reads the world of a plant.
 World read_world_of(const Plant& plant);
 /// Makes the simulation of a plant.
-Simulation make_simulation(const Plant& plant, const World& world, const Guests& guests);
+Simulation make_simulation(const Plant& plant, World world, const Guests& guests);
 
 /// Returns the name of the model in topics and services. Throws InputError if it is not valid.
 std::string choose_model_name(const Plant& plant, const Model& model);

@@ -41,7 +41,7 @@ void Broadcast::advertise_odometry(ros::NodeHandle& nh, const Frames& frames,
     set_frames(*message, {frames.world, frames.vehicle});
   }
   if (!odometry_topic_.publishes_tf()) return;
-  tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
+  tf_publisher_ = TransformPublisher(nh);
   transforms_.transforms.push_back(make_identity_transform(frames.world, frames.vehicle));
   if (rotor_tf) add_rotor_frames(model, frames);
 }
@@ -98,6 +98,10 @@ void Broadcast::offer(const Simulation& simulation) {
   odometry_publisher_.offer(odometry_);
 }
 
+void Broadcast::serve_new_subscribers(const Simulation& simulation) {
+  if (tf_publisher_.has_unserved_subscriber()) send_transforms(simulation);
+}
+
 void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) {
   sent_ = topic.count;
   fill_odometry(topic);
@@ -129,9 +133,6 @@ void Broadcast::add_rotor_frames(const Model& model, const Frames& frames) {
 
 void Broadcast::send_transforms(const Simulation& simulation) {
   const VehicleState& state = simulation.state();
-  for (geometry_msgs::TransformStamped& transform : transforms_.transforms) {
-    transform.header.stamp = clock_.clock;
-  }
   to_ros(state, transforms_.transforms.front().transform);
   for (std::size_t i = 1; i < transforms_.transforms.size(); ++i) {
     const Joint& joint = simulation.model().joints[i - 1];
@@ -139,7 +140,7 @@ void Broadcast::send_transforms(const Simulation& simulation) {
     const Quaterniond turned = joint.pose.rotation() * Eigen::AngleAxisd(angle, joint.axis);
     set_quaternion(transforms_.transforms[i].transform.rotation, turned.coeffs().data());
   }
-  tf_publisher_.publish(transforms_);
+  tf_publisher_.publish(transforms_, clock_.clock);
 }
 
 void Broadcast::send_joint_states(const VehicleState& state) {

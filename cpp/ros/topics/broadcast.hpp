@@ -18,6 +18,7 @@
 #include "path.hpp"
 #include "quadcore/simulation.hpp"
 #include "topic_broadcast.hpp"
+#include "transform_publisher.hpp"
 #include "vehicle_messages.hpp"
 
 namespace quadcore::node {
@@ -41,6 +42,10 @@ class Broadcast {
   void show(const Simulation& simulation);
   /// Sends the present odometry to subscribers that have waited for some seconds.
   void offer(const Simulation& simulation);
+  /// Whether to call serve_new_subscribers() between two steps.
+  bool has_unserved_subscriber() const { return tf_publisher_.has_unserved_subscriber(); }
+  /// Sends the present transforms if a new subscriber may have missed them.
+  void serve_new_subscribers(const Simulation& simulation);
 
  private:
   void advertise_odometry(ros::NodeHandle& nh, const Frames& frames, const Simulation& simulation,
@@ -60,7 +65,7 @@ class Broadcast {
   ClockPublisher clock_publisher_;
   OfferingPublisher<nav_msgs::Odometry> odometry_publisher_;
   ros::Publisher truth_publisher_;
-  ros::Publisher tf_publisher_;
+  TransformPublisher tf_publisher_;
   ros::Publisher static_tf_publisher_;
   ros::Publisher joint_states_publisher_;
   PathTopic path_;
