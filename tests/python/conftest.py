@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import signal
 
 import pytest
 from hypothesis import settings
+
+# Before numpy is imported: the tests, which run side by side, solve problems too small for threads.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 settings.register_profile("quadcore", deadline=None)  # a busy machine is no fault
 settings.load_profile("quadcore")

@@ -86,7 +86,8 @@ class Horizons:
         self.rows = np.array([rows[i][:most] for i in keep])
         self._first = first = np.array([starts[i][0] for i in keep])
         self.count = len(keep)
-        self._offsets = np.array([steps[r] - steps[a] for r, a in zip(self.rows, first)])
+        offsets = np.array([steps[r] - steps[a] for r, a in zip(self.rows, first)])
+        self._compared = _group_by_step(offsets)
         self._begin = steps[self._first]
         self.record = record
         self._commands, self._command_steps = _make_commands(record, dt, rotors)
@@ -128,15 +129,14 @@ class Horizons:
         rows = self.rows
         state = np.empty((n, batch.state_width))
         states = np.empty((groups, *rows.shape, batch.state_width))
-        begin, flown = np.tile(self._begin, groups), 0
-        changes = self._list_command_steps(int(self._offsets.max()))
-        for stop in sorted({*np.unique(self._offsets).tolist(), *changes}):
-            if flown in changes:
-                batch.step(self._find_command(begin + flown), 0)
-            batch.step(None, stop - flown)
-            flown = stop
-            piece, row = np.nonzero(self._offsets == stop)
-            if len(piece):
+        changes = self._find_commands(max(self._compared))
+        stops = sorted({*self._compared, *changes})
+        for start, stop in zip(stops, stops[1:]):
+            change = changes.get(start)
+            commands = None if change is None else self._commands[np.tile(change, groups)]
+            batch.step(commands, stop - start)
+            if stop in self._compared:
+                piece, row = self._compared[stop]
                 batch.read_state(state)
                 states[:, piece, row] = state.reshape(groups, self.count, -1)[:, piece]
         compared = self._compare(
@@ -158,16 +158,14 @@ class Horizons:
             first = max(last, first + 1)  # gaps may be longer than a horizon
         return found
 
-    def _list_command_steps(self, end: int) -> List[int]:
-        """List the steps of a piece, from 0, at which a command changes."""
+    def _find_commands(self, end: int) -> Dict[int, np.ndarray]:
+        """Return the row of each piece in the commands, by the steps at which they change."""
         since = (self._command_steps[None, :] + self.shift) - self._begin[:, None]
         inside = since[(since > 0) & (since < end)]
-        return [0, *np.unique(inside).tolist()]
-
-    def _find_command(self, steps: np.ndarray) -> np.ndarray:
-        row = np.searchsorted(self._command_steps, steps - self.shift, "right") - 1
-        commands: np.ndarray = self._commands[np.maximum(row, 0)]
-        return commands
+        steps = np.array([0, *np.unique(inside)])
+        at = steps[:, None] + self._begin[None, :] - self.shift
+        rows = np.maximum(np.searchsorted(self._command_steps, at, "right") - 1, 0)
+        return dict(zip(steps.tolist(), rows))
 
     def _make_states(self, corrections: np.ndarray, groups: int) -> np.ndarray:
         r, rows = self.record, np.tile(self._first, groups)
@@ -199,6 +197,16 @@ class Horizons:
             "rotors": lambda: state.rotor_velocity - r.rotors[rows],
         }
         return np.hstack([parts[name]() for name in self.channels])
+
+
+def _group_by_step(offsets: np.ndarray) -> Dict[int, Any]:
+    """Return the indices of the entries with each value, by value."""
+    order = np.argsort(offsets, axis=None, kind="stable")
+    values, first = np.unique(offsets.ravel()[order], return_index=True)
+    groups = np.split(order, first[1:])
+    return {
+        int(value): np.unravel_index(group, offsets.shape) for value, group in zip(values, groups)
+    }
 
 
 def _drop_close_rows(record: Record, dt: float) -> Record:
