@@ -19,6 +19,7 @@ import socket
 import sys
 
 IMPORTED = (
+    "matplotlib.backends.backend_svg",
     "printed",
     "quadcore.__main__",
     "quadcore.report.log_plots",
@@ -32,8 +33,10 @@ IMPORTED = (
     "quadcore.studies.sweep.plots",
     "quadcore.studies.tune.output",
     "scipy.linalg",
+    "scipy.ndimage",
     "scipy.optimize",
     "scipy.signal",
+    "scipy.spatial.transform",
     "scipy.stats",
 )
 

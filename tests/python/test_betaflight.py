@@ -19,7 +19,7 @@ from quadcore.support.rotation import compose_roll_pitch_yaw, to_matrix
 
 
 def iris(spawn=(0, 0, 10)):
-    return qc.Simulation("iris", engine="eigen", dt=0.001, spawn=spawn)
+    return qc.Simulation("iris", engine="eigen", dt=0.002, spawn=spawn)
 
 
 def fly(stack, duration, reference="hover", **options):
@@ -93,8 +93,8 @@ def test_it_reaches_a_point(tmp_path):
 
 def test_flights_are_bit_identical_also_side_by_side_and_if_answers_are_lost(tmp_path):
     stack = write_stack(tmp_path)
-    lossy = write_stack(tmp_path, "drop=400", name="lossy.yaml")  # each repeat takes 0.25 s
-    arguments = ["iris", "--engine", "eigen", "--dt", "0.001", "--duration", "0.5", "--quiet"]
+    lossy = write_stack(tmp_path, "drop=200", name="lossy.yaml")  # each repeat takes 0.25 s
+    arguments = ["iris", "--engine", "eigen", "--dt", "0.002", "--duration", "0.5", "--quiet"]
     command = [*QUADCORE, "run", *arguments, "--reference", "step:dx=1", "--controller"]
     logs = [tmp_path / f"{name}.csv" for name in ("a", "b", "lossy")]
     flights = [
@@ -127,7 +127,7 @@ def test_a_broken_autopilot_ends_the_flight_with_one_line(tmp_path, fault, reaso
 def test_a_killed_autopilot_is_exit_status_3(tmp_path):
     stack = write_stack(tmp_path, "die=2.1")
     done = run_command(
-        *["run", "iris", "--engine", "eigen", "--dt", "0.001", "--controller", str(stack)],
+        *["run", "iris", "--engine", "eigen", "--dt", "0.002", "--controller", str(stack)],
         *["--reference", "hover", "--duration", "2", "--quiet"],
     )
     assert done.returncode == 3
@@ -205,7 +205,7 @@ def test_an_evaluation_is_bit_identical(tmp_path):
     for name in ("first", "second"):
         done = run_command(
             *["evaluate", "--model", "iris", "--controller", f"geometric,{stack}"],
-            *["--reference", "hover", "--duration", "0.2", "--dt", "0.001", "--seeds", "2"],
+            *["--reference", "hover", "--duration", "0.2", "--dt", "0.002", "--seeds", "2"],
             *["--out", str(tmp_path / name), "--no-plots", "--quiet"],
         )
         assert done.returncode == 0, done.stderr

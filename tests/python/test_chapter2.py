@@ -136,7 +136,7 @@ def by_newton_and_euler(v, q, qdot, omega):
 
 def test_lagrange_and_newton_and_euler_agree(odd):
     model = MathematicalModel(odd)
-    for q, qdot, omega in states(10_000):
+    for q, qdot, omega in states(1000):
         qddot = model.acceleration(q, qdot, omega, np.zeros(4))
         linear, angular = by_newton_and_euler(odd, q, qdot, omega)
         Wdot = np.einsum("kij,k->ij", gradient_of_W(q[3:]), qdot[3:])
@@ -147,7 +147,7 @@ def test_lagrange_and_newton_and_euler_agree(odd):
 
 
 def test_the_gyroscopic_effect_takes_no_power(odd):
-    for q, qdot, omega in states(10_000):
+    for q, qdot, omega in states(1000):
         G_a = matrices.G_a(odd, q, omega)
         assert np.abs(G_a + G_a.T).max() < 1e-16
         w = euler_rates_to_body(q[3:]) @ qdot[3:]

@@ -179,7 +179,8 @@ def test_commands_options_and_names_are_completed(line, word):
 
 def test_play_and_plot_take_folders_that_run_wrote(capsys):
     for model in ("quadrotor", "hexarotor"):
-        main([HOVER[0], model, *HOVER[2:], "--controller", "geometric", "--out", f"out/{model}"])
+        words = ["--controller", "geometric", "--no-plots", "--out", f"out/{model}"]
+        assert main([HOVER[0], model, *HOVER[2:], *words]) == 0
     assert run_main(capsys, "play", "out/quadrotor", "-o", "one.html") == "written one.html\n"
     # The rotors are those of each vehicle.
     main(["play", "out/quadrotor", "out/hexarotor", "-o", "both.html"])
@@ -204,7 +205,7 @@ def test_play_takes_folders_of_comparisons(capsys):
 
 
 def test_a_log_is_not_played_with_the_model_of_another_vehicle(capsys):
-    main([*HOVER, "--controller", "geometric", "--out", "out"])
+    main([*HOVER, "--controller", "geometric", "--no-plots", "--out", "out"])
     for log in ("out", "out/log.csv"):
         error = refusal(capsys, "play", log, "--model", "iris")
         assert "is a flight of 'quadrotor', but --model iris is 'iris'. Leave --model out" in error

@@ -88,7 +88,7 @@ def test_every_controller_settles_at_a_position_through_noise(engine, controller
 def test_the_controller_and_its_twin_in_numpy_fly_one_flight():
     spiral = references.spiral()
     logs = [
-        on(spiral).run(2, controller=controller, reference=spiral)
+        on(spiral).run(1, controller=controller, reference=spiral)
         for controller in ("geometric", Twin())
     ]
     assert np.abs(logs[0].position - logs[1].position).max() < 1e-9

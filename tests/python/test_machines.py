@@ -10,6 +10,7 @@ import os
 import re
 import subprocess
 import sys
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,7 @@ for engine in sys.argv[4:]:
 """
 
 
+@lru_cache(maxsize=None)
 def fly(model, world="empty", **environment):
     """Hash of every bit of state and odometry on the way, for each engine and drag model."""
     aerodynamic = "drone_plugin" if model == "quadrotor" else "aerodynamic"
@@ -66,23 +68,25 @@ def fly(model, world="empty", **environment):
     return done.stdout.splitlines()
 
 
-def test_flights_and_noise_are_the_same_with_and_without_fused_multiply_adds(tmp_path):
+@pytest.fixture(scope="module")
+def odd(tmp_path_factory):
+    """File of a vehicle that is the same in no two axes, with noisy odometry."""
     urdf = vehicle(ODD, 1, SKEW, (0.01, -0.02, 0.015), {**AIR, **DRAG, **FLAPPING}, MOTOR)
-    urdf = urdf.replace("</robot>", plugin("odometry", NOISE) + "</robot>")
-    (tmp_path / "odd.urdf").write_text(urdf)
-    here = fly(tmp_path / "odd.urdf")
+    path = tmp_path_factory.mktemp("odd") / "odd.urdf"
+    path.write_text(urdf.replace("</robot>", plugin("odometry", NOISE) + "</robot>"))
+    return path
+
+
+def test_flights_and_noise_are_the_same_with_and_without_fused_multiply_adds(odd):
+    here = fly(odd)
     assert len(here) == 2 * len(ENGINES)
-    assert fly(tmp_path / "odd.urdf", GLIBC_TUNABLES=AS_AN_OLD_PROCESSOR) == here
+    assert fly(odd, GLIBC_TUNABLES=AS_AN_OLD_PROCESSOR) == here
 
 
 @pytest.mark.parametrize("lanes", ["1", "2", "4", "8"])
 @pytest.mark.parametrize("name", ["quadrotor", "odd"])
-def test_rotors_in_lanes_of_every_width_fly_the_same_bytes(name, lanes, tmp_path):
-    model = name
-    if name == "odd":
-        urdf = vehicle(ODD, 1, SKEW, (0.01, -0.02, 0.015), {**AIR, **DRAG, **FLAPPING}, MOTOR)
-        model = tmp_path / "odd.urdf"
-        model.write_text(urdf.replace("</robot>", plugin("odometry", NOISE) + "</robot>"))
+def test_rotors_in_lanes_of_every_width_fly_the_same_bytes(name, lanes, odd):
+    model = odd if name == "odd" else name
     assert fly(model, QUADCORE_LANES=lanes) == fly(model)
 
 

@@ -244,7 +244,7 @@ def test_the_command_line_logs_topics_as_python_does(log_topics, tmp_path, monke
     np.savetxt("fly.csv", MANOEUVRE, delimiter=",", header="t,w1,w2,w3,w4", comments="")
     options = ["--duration", "0.1", "--commands", "fly.csv", "--log-every", "10", "--quiet"]
     topics = ["--log-topics", "odom,vel_cmd"]
-    logs = ["--log", "log.csv", "--log", "log.mat", "--out", "out"]
+    logs = ["--log", "log.csv", "--log", "log.mat", "--out", "out", "--no-plots"]
     assert main(["run", "quadrotor", *options, *topics, *logs]) == 0
     log_topics.to_csv("python.csv")
     assert Path("log.csv").read_bytes() == Path("python.csv").read_bytes()
