@@ -64,4 +64,5 @@ def _plot_together(names: Sequence[str], logs: Sequence[Log], folder: Path) -> L
     curves = [Curve(name, decimate(log, _ROWS)) for name, log in zip(names, logs)]
     figures = draw(curves, curves[0].log, names[0])
     make_folder(folder)
-    return save_drawings(folder, {name: finish(figure) for name, figure in figures.items()})
+    drawings = {name: finish(figure, is_on_page=False) for name, figure in figures.items()}
+    return save_drawings(folder, drawings)

@@ -27,7 +27,7 @@ class Drawing(NamedTuple):
     title : str
         Title of the figure.
     svg : str
-        SVG element for a page.
+        SVG element for a page; empty if there is neither a page nor an SVG file.
     files : dict of str to bytes
         Contents of the files, by format.
     """

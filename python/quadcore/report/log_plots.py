@@ -35,8 +35,17 @@ _PLACES = ("x (m)", "y (m)", "z (m)")
 _ANGLES = ("roll (deg)", "pitch (deg)", "yaw (deg)")
 
 
-def draw(log: Trajectory, directory: Path) -> dict[str, Drawing]:
+def draw(log: Trajectory, directory: Path, is_on_page: bool = True) -> dict[str, Drawing]:
     """Draw every plot of a flight into a folder, which is made if missing.
+
+    Parameters
+    ----------
+    log
+        Log of the flight.
+    directory
+        Folder of the files.
+    is_on_page
+        Whether a page will show the drawings.
 
     Returns
     -------
@@ -65,7 +74,7 @@ def draw(log: Trajectory, directory: Path) -> dict[str, Drawing]:
         plots["autopilot"] = _draw_autopilot
     drawings = {}
     for name, draw_plot in plots.items():
-        drawings[name] = finish(draw_plot(log))
+        drawings[name] = finish(draw_plot(log), is_on_page)
         save_drawings(directory, {name: drawings[name]})
     return drawings
 

@@ -63,11 +63,14 @@ def png(figure: Figure) -> bytes:
     return _write(figure, "png")
 
 
-def finish(figure: Figure) -> Drawing:
-    """Draw a figure as an SVG element, and as files in the formats of `get_formats`."""
-    element = make_element(_write(figure, "svg").decode())
+def finish(figure: Figure, is_on_page: bool = True) -> Drawing:
+    """Draw a figure as files in the formats of `get_formats`, and as an SVG element for a page."""
+    formats = get_formats()
+    element = ""
+    if is_on_page or "svg" in formats:
+        element = make_element(_write(figure, "svg").decode())
     document = encode_text(f'<?xml version="1.0" encoding="utf-8"?>\n{element}\n')
-    files = {kind: document if kind == "svg" else _write(figure, kind) for kind in get_formats()}
+    files = {kind: document if kind == "svg" else _write(figure, kind) for kind in formats}
     return Drawing(str(figure.get_label()), element, files)
 
 
