@@ -1,8 +1,10 @@
 #include "quadcore/control/control_loop.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -18,6 +20,14 @@ namespace {
 
 using control::ReferencePreview;
 using control::ReferenceShape;
+
+/// A compiled function of the user, as `quadcore.CompiledController` describes it.
+using CompiledFunction = void (*)(double time, double* state, double* reference, double* data,
+                                  double* speeds);
+
+/// Numbers of a state and of a reference for a compiled function: the first of their messages.
+using CompiledState = std::array<double, 13>;
+using CompiledReference = std::array<double, 18>;
 
 /// A control loop with the number, the saturation and the duration of its calls.
 class BoundLoop {
@@ -77,6 +87,38 @@ class BoundLoop {
     });
   }
 
+  /// Advances under a compiled function of the user, without the interpreter.
+  /// \param address  of a CompiledFunction
+  /// \param data     numbers that the function may change, 1-D
+  std::int64_t control_compiled(std::int64_t n, std::uintptr_t address, const py::array& data,
+                                const py::object& limits, const std::string& odometry,
+                                const ReferenceShape& reference) {
+    const auto function = reinterpret_cast<CompiledFunction>(address);
+    double* const own = writable(data, {data.size()}, "data");
+    const Numbers most = check_limits(limits);
+    const Lock lock(*bound_.guarded);
+    const Simulation& simulation = bound_.guarded->simulation;
+    const Topics& topics = simulation.topics();
+    const std::size_t topic = control::GuidedController::find_odometry(topics, odometry);
+    const auto call = [&](double, double* speeds) {
+      const double time = simulation.time();
+      CompiledState state;
+      CompiledReference wanted;
+      std::copy_n(topics[topic].values.data(), state.size(), state.data());
+      messages::write(reference.at(time), wanted.data());
+      std::fill_n(speeds, width_, std::numeric_limits<double>::quiet_NaN());
+      clocked([&] { function(time, state.data(), wanted.data(), own, speeds); });
+      if (!std::all_of(speeds, speeds + width_, [](double w) { return std::isfinite(w); })) {
+        const py::gil_scoped_acquire gil;
+        take(py::array_t<double>(static_cast<py::ssize_t>(width_), speeds), speeds);
+      }
+      count_saturated(speeds, most);
+    };
+    if (bound_.guarded->in_fleet) return loop_.prepare(n, call);
+    raising_warnings(*bound_.guarded, [&] { without_gil([&] { loop_.advance(n, call); }); });
+    return n;
+  }
+
   std::int64_t calls() const { return calls_; }
   std::int64_t saturated() const { return saturated_; }
   py::array_t<double> seconds() const {
@@ -88,22 +130,32 @@ class BoundLoop {
   /// \param ask  called without the lock; returns the speeds to command
   template <class Ask>
   std::int64_t advance_by(std::int64_t n, const py::object& limits, const Ask& ask) {
-    const Numbers most = numbers(limits, 1, "limits");
-    check_shape(most, {static_cast<py::ssize_t>(width_)}, "limits");
+    const Numbers most = check_limits(limits);
     const Lock lock(*bound_.guarded);
     const auto call = [&](double, double* speeds) {
       py::object answer;
       without_lock([&] { clocked([&] { answer = ask(); }); });
       take(answer, speeds);
-      bool at_limit = false;
-      for (std::size_t i = 0; i < width_; ++i) {
-        at_limit = at_limit || std::abs(speeds[i]) >= most.data()[i];
-      }
-      saturated_ += at_limit;
+      count_saturated(speeds, most);
     };
     if (bound_.guarded->in_fleet) return loop_.prepare(n, call);
     raising_warnings(*bound_.guarded, [&] { loop_.advance(n, call); });
     return n;
+  }
+
+  Numbers check_limits(const py::object& limits) const {
+    Numbers most = numbers(limits, 1, "limits");
+    check_shape(most, {static_cast<py::ssize_t>(width_)}, "limits");
+    return most;
+  }
+
+  /// Counts a call if a speed reaches its limit.
+  void count_saturated(const double* speeds, const Numbers& most) {
+    bool at_limit = false;
+    for (std::size_t i = 0; i < width_; ++i) {
+      at_limit = at_limit || std::abs(speeds[i]) >= most.data()[i];
+    }
+    saturated_ += at_limit;
   }
 
   template <class Call>
@@ -188,6 +240,9 @@ void bind_control_loop(py::module_& m) {
            py::arg("odometry"), py::arg("vehicle"),
            "Advance n steps under a function of time, s, and odometry that returns rotor speeds "
            "(n,), rad/s.")
+      .def("control_compiled", &BoundLoop::control_compiled, py::arg("n"), py::arg("address"),
+           py::arg("data"), py::arg("limits"), py::arg("odometry"), py::arg("reference"),
+           "Advance n steps under a compiled function at an address, see CompiledController.")
       .def_property_readonly("calls", &BoundLoop::calls, "How often the controller was called.")
       .def_property_readonly("saturated", &BoundLoop::saturated,
                              "Number of calls with a command that the rotors could not follow.")

@@ -34,6 +34,7 @@ from ._core import (
     plugin_folders,
 )
 from .control import controllers, gains, references
+from .control.compiled_controller import CompiledController
 from .control.controller import Controller
 from .control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust, WrenchThrust
 from .control.keywords import ControllerName, ReferenceName
@@ -76,6 +77,7 @@ __all__ = [
     "BatchState",
     "Benchmark",
     "Comparison",
+    "CompiledController",
     "Controller",
     "ControllerName",
     "EngineName",

@@ -530,6 +530,15 @@ class ControlLoop(metaclass=_Bound):
         odometry: str,
         vehicle: Any,
     ) -> int: ...
+    def control_compiled(
+        self,
+        n: int,
+        address: int,
+        data: _Array,
+        limits: _Array,
+        odometry: str,
+        reference: ReferenceShape,
+    ) -> int: ...
     @property
     def calls(self) -> int: ...
     @property

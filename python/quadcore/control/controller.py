@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol, Union
 from .._core import InputError, Odometry
 from ..support.arguments import shorten
 from .built_in import BuiltInController
+from .compiled_controller import is_compiled
 from .inner_loop import SetPoint
 from .keywords import ControllerName
 from .user_parameters import set_attribute
@@ -105,6 +106,10 @@ def check_callable(controller: Any) -> None:
         raise InputError(
             f"controller is {shorten(controller)}. Give a function or an object that is called "
             f"as {form}."
+        )
+    if is_compiled(controller):
+        raise InputError(
+            "controller is a compiled function. Give quadcore.CompiledController(function)."
         )
     if inspect.isclass(controller):
         name = controller.__name__

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any, Callable, Dict, Iterator, List, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 
@@ -13,6 +13,17 @@ from ..support.arguments import shorten
 _LENGTHS = {"position": 3, "velocity": 3, "acceleration": 3, "jerk": 3, "snap": 3}
 _LENGTHS.update(yaw=1, yaw_rate=1, yaw_acceleration=1)
 """Members of a reference in the order of their numbers in a message."""
+
+
+def list_fields(wanted: Any) -> Sequence[float]:
+    """List the fields of a message of kind ``reference``."""
+    vectors = (wanted.position, wanted.velocity, wanted.acceleration, wanted.jerk, wanted.snap)
+    return [
+        *(float(value) for vector in vectors for value in vector),
+        float(wanted.yaw),
+        float(wanted.yaw_rate),
+        float(wanted.yaw_acceleration),
+    ]
 
 
 class ReferenceSamples(SimpleNamespace):

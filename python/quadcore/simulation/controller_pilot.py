@@ -11,6 +11,7 @@ from .. import _core
 from .._core import FlightError, InputError, QuadcoreError
 from ..control import controllers, references
 from ..control.built_in import BuiltInController
+from ..control.compiled_controller import CompiledController
 from ..control.controller import SENSED, ControllerLike, check_callable
 from ..control.estimate_errors import EstimateErrors
 from ..control.fair_controller import find_sensors
@@ -165,10 +166,21 @@ class ControllerPilot(ReferencePilot):
             core, shape = self.built_in
             return lambda steps: loop.follow(steps, core, SENSED, shape)
         call, limits = self._function(simulation), self._limits
+        compiled, wanted = self._find_compiled(), self._reference
+        if compiled is not None and isinstance(wanted, references.Shape):
+            address, data, shape = compiled.address, compiled.data, wanted.shape
+            return lambda steps: loop.control_compiled(steps, address, data, limits, SENSED, shape)
         sensors = find_sensors(self._controller, simulation)
         if isinstance(self._controller, BuiltInController):
             call, limits = self._count_reported(call), np.full(len(limits), np.inf)
         return lambda steps: loop.control(steps, call, limits, SENSED, sensors)
+
+    def _find_compiled(self) -> Optional[CompiledController]:
+        """Return the compiled controller, unless Python notes something after each call."""
+        compiled = getattr(self._controller, "compiled", None)
+        if self._own_columns.columns or self._estimate_errors is not None:
+            return None
+        return compiled if isinstance(compiled, CompiledController) else None
 
     def _count_reported(self, call: Command) -> Command:
         """Count what a built-in controller reports, which its speeds alone do not show."""

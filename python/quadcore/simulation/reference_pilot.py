@@ -12,6 +12,7 @@ from .._core import InputError
 from ..control import references
 from ..control.keywords import ReferenceName
 from ..control.plugin_controller import PluginController
+from ..control.reference_ahead import list_fields
 from ..support.arguments import shorten
 from .flight import Pilot
 
@@ -106,19 +107,8 @@ class PluginPilot(ReferencePilot):
                 steps = 1
             for _ in range(steps):
                 if reference is not None:
-                    simulation.publish(TOPIC, _list_fields(reference(simulation.time)))
+                    simulation.publish(TOPIC, list_fields(reference(simulation.time)))
                 flight.advance(1)
             return steps
 
         return advance
-
-
-def _list_fields(wanted: Any) -> Sequence[float]:
-    """List the fields of a message of kind ``reference``."""
-    vectors = (wanted.position, wanted.velocity, wanted.acceleration, wanted.jerk, wanted.snap)
-    return [
-        *(float(value) for vector in vectors for value in vector),
-        float(wanted.yaw),
-        float(wanted.yaw_rate),
-        float(wanted.yaw_acceleration),
-    ]

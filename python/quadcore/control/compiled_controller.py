@@ -1,0 +1,147 @@
+"""Controllers in compiled functions."""
+
+from __future__ import annotations
+
+import ctypes
+from _ctypes import CFuncPtr
+from typing import Any, ClassVar, Sequence
+
+import numpy as np
+
+from .._core import InputError
+from ..support.arguments import shorten
+from .rate_and_delay import DELAY, RATE
+from .reference_ahead import list_fields
+from .vectorized import VectorState
+from .vehicle import unwrap
+
+_NUMBERS = ctypes.POINTER(ctypes.c_double)
+
+
+class CompiledController:
+    """Controller in a compiled function, which the core calls without the interpreter.
+
+    The function is ``void f(double t, double *state, double *reference, double *data, double
+    *speeds)``. It must not keep the pointers:
+
+    - `t`: simulation time, s.
+    - `state`: 13 measured numbers of the members of `Odometry`: position, m, orientation (x, y, z,
+      w), linear velocity, m/s, angular velocity, rad/s.
+    - `reference`: 18 numbers of the members of `Reference`: position, velocity, acceleration, jerk,
+      snap, m, s, world axes; yaw, yaw rate, yaw acceleration, rad, s.
+    - `data`: numbers of the controller, which it may change.
+    - `speeds`: the function writes the signed rotor speeds, rad/s.
+
+    Parameters
+    ----------
+    function : numba CFunc or ctypes function
+        Made by ``numba.cfunc(CompiledController.signature)``, or by `prototype`.
+    rate : float, default 500
+        Calls per simulated second, 1/s.
+    delay : float, default 0
+        Time from a call until its command reaches the motors, s.
+
+    Attributes
+    ----------
+    signature : str
+        Signature of the function for numba.
+    prototype : type
+        Type of the function for ctypes.
+
+    Raises
+    ------
+    InputError
+        If the function has other arguments.
+    """
+
+    signature: ClassVar[str] = f"void(float64{4 * ', CPointer(float64)'})"
+    prototype: ClassVar[Any] = ctypes.CFUNCTYPE(None, ctypes.c_double, *4 * [_NUMBERS])
+
+    def __init__(self, function: Any, rate: float = RATE, delay: float = DELAY) -> None:
+        self.rate, self.delay = rate, delay
+        self._made_of = function  # numba frees the code of a function without references
+        self._function = _find_function(function)
+        self._data = np.empty(0)
+        self._width = 0
+
+    def make_data(self, simulation: Any) -> Any:
+        """Return the numbers `data` at the start of a run, such as gains and the state of a filter.
+
+        Parameters
+        ----------
+        simulation : Simulation or Vehicle
+            Vehicle of the run, as `Controller.reset` receives it.
+        """
+        return ()
+
+    def reset(self, simulation: Any) -> None:
+        """Prepare for a run.
+
+        Parameters
+        ----------
+        simulation : Simulation or Vehicle
+            Vehicle of the run.
+
+        Raises
+        ------
+        InputError
+            If the data are not numbers in one dimension.
+        """
+        given = self.make_data(simulation)
+        try:
+            self._data = np.array(given, dtype=float)
+        except (TypeError, ValueError):
+            self._data = np.empty((0, 0))
+        if self._data.ndim != 1:
+            raise InputError(
+                f"controller: its make_data returned {shorten(given)}. Return a list of numbers."
+            )
+        self._width = unwrap(simulation).command_width
+
+    @property
+    def compiled(self) -> CompiledController:
+        """The controller itself; wrappers that pass it on let the core call the function."""
+        return self
+
+    @property
+    def address(self) -> int:
+        """Address of the function."""
+        return ctypes.cast(self._function, ctypes.c_void_p).value or 0
+
+    @property
+    def data(self) -> np.ndarray:
+        """Numbers of the controller, shape (n,)."""
+        return self._data
+
+    def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
+        """Return the signed rotor speeds, rad/s; see `Controller`."""
+        if reference is None:
+            raise InputError("controller: a compiled function needs a reference. Give one.")
+        measured = np.concatenate([getattr(state, name) for name in VectorState._fields])
+        speeds = np.full(self._width, np.nan)
+        rows = (measured, np.array(list_fields(reference)), self._data, speeds)
+        self._function(t, *(row.ctypes.data_as(_NUMBERS) for row in rows))
+        return speeds
+
+
+def is_compiled(given: Any) -> bool:
+    """Whether an object is a compiled function."""
+    return isinstance(getattr(given, "ctypes", given), CFuncPtr)
+
+
+def _find_function(given: Any) -> Any:
+    """Return the function of ctypes in a compiled function; raises `InputError` if it differs."""
+    if not is_compiled(given):
+        raise InputError(
+            f"controller: {shorten(given)} is not a compiled function. Compile it with "
+            "numba.cfunc(quadcore.CompiledController.signature)."
+        )
+    function = getattr(given, "ctypes", given)
+    wanted = CompiledController.prototype
+    arguments: Sequence[Any] = function.argtypes or ()
+    if (function.restype, tuple(arguments)) != (wanted._restype_, wanted._argtypes_):
+        raise InputError(
+            "controller: the compiled function has other arguments than "
+            f"{CompiledController.signature}. Declare these."
+        )
+    return function
