@@ -271,7 +271,7 @@ def wait_until(condition: Callable[[], bool], seconds: float = LONG) -> None:
     while not condition():
         if time.monotonic() > limit:
             raise AssertionError("waited in vain")
-        time.sleep(0.005)
+        time.sleep(0.02)
 
 
 def run(name: str, case: type[unittest.TestCase]) -> None:

@@ -42,7 +42,6 @@ class TestLaunch(unittest.TestCase):
         with Recording("/uav1/joint_states", JointState) as joints:
             joints.wait(lambda m: m and abs(m[-1].velocity[0] - 471) < 1)
         self.assertEqual(rospy.get_param("/uav1/quadcore/engine"), "ode")
-        harness.call("/uav1/gazebo/pause_physics")  # no other test needs it
 
     def test_the_model_can_be_changed_by_arguments(self):
         changes = ("name:=blue", "set:=odometry.rate=50 odometry.twistFrame=body", "drag:=none")
