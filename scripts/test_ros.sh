@@ -166,7 +166,7 @@ SECONDS=0
 (run_in devel several rotors_hover rotors "playing logs log_per_flight lee" "masters lockstep services" \
   "faults clock topics one_world" "controller controller_faults set_points" "parameters disturbances refusals" \
   launch hector mrs pid "tools alarms waiting gazebo" "pages joystick" "tutorial building" fly_from_python \
-  gazebo_launch links "plugin_topics plugin_by_others sensors markers rotors_topics vehicles")
+  gazebo_launch gazebo_tutorial links "plugin_topics plugin_by_others sensors markers rotors_topics vehicles")
 (run_in install launch "playing plugin_by_others" fly_from_python)
 [ ! -e $workspace/failed ]
 say "the ROS tests passed in $SECONDS s"

@@ -181,7 +181,7 @@ if(CATKIN_ENABLE_TESTING)
     foreach(test topics services lockstep playing logs log_per_flight clock several parameters faults
                  masters launch fly_from_python controller controller_faults set_points pid joystick
                  sensors disturbances markers tutorial lee rotors rotors_topics rotors_hover gazebo
-                 gazebo_launch pages refusals links one_world waiting building alarms
+                 gazebo_launch gazebo_tutorial pages refusals links one_world waiting building alarms
                  tools hector mrs vehicles)
       add_rostest(tests/ros/${test}.test)
     endforeach()
