@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "flat_table.hpp"
 #include "quadcore/control/control_loop.hpp"
 #include "quadcore/control/guided_controller.hpp"
 
@@ -158,8 +160,10 @@ void GuidedBlock::command(Control& control, double step, double period, double* 
         }
       });
   double* const memory = control.memory.data();
+  std::optional<control::FlatState> flat;
+  if (point.flat) flat = point.flat->state(point.column);
   follower.guide->controller->command(period, odometry, point.wanted, memory, speeds,
-                                      point.flat ? &*point.flat : nullptr);
+                                      flat ? &*flat : nullptr);
   follower.guided->saturated += control::Controller::saturated(memory);
   if (is_timed) follower.guided->seconds.push_back(stopwatch.seconds());
 }

@@ -132,7 +132,7 @@ void LaneControls::read_references(double step, double dt) {
     const bool feeds = guide.controller->feeds() != control::WrenchController::Feeds::nothing;
     member.is_defined = point.flat || !feeds;
     if (member.preview == of_all) continue;
-    const auto wanted = control::numbers_of(point.wanted, point.flat ? &*point.flat : nullptr);
+    const auto wanted = control::numbers_of(point);
     const auto* const column = reinterpret_cast<const double*>(&wanted);
     if (of_all) {
       wanted_.put(member.lane, column);

@@ -133,6 +133,7 @@ class BoundLoop {
     const Numbers most = check_limits(limits);
     const Lock lock(*bound_.guarded);
     const auto call = [&](double, double* speeds) {
+      bound_.guarded->simulation.state();  // which arrays in Python view
       py::object answer;
       without_lock([&] { clocked([&] { answer = ask(); }); });
       take(answer, speeds);

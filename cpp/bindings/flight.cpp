@@ -62,7 +62,12 @@ std::unique_ptr<BoundFlight> create_flight(const Self& self, const py::object& c
 std::int64_t advance(BoundFlight& bound, std::int64_t n) {
   const Lock lock(*bound.guarded);
   if (bound.guarded->in_fleet) return bound.flight.prepare(n);
-  raising_warnings(*bound.guarded, [&] { without_gil([&] { bound.flight.advance(n); }); });
+  raising_warnings(*bound.guarded, [&] {
+    without_gil([&] {
+      bound.flight.make_room(n);
+      bound.flight.advance(n);
+    });
+  });
   return n;
 }
 

@@ -83,12 +83,14 @@ void without_gil(const Function& function) {
   if (thrown) std::rethrow_exception(thrown);
 }
 
-/// Issue the simulation's warnings of a call as Python warnings, even if the call fails.
+/// Issue the simulation's warnings of a call as Python warnings and update the state, which arrays
+/// in Python view, even if the call fails.
 template <class Call>
 void raising_warnings(const Guarded& guarded, const Call& call) {
   const Simulation& simulation = guarded.simulation;
   const std::size_t before = simulation.warnings().size();
-  const auto raise = [&] {
+  const auto finish = [&] {
+    simulation.state();
     for (std::size_t i = before; i < simulation.warnings().size(); ++i) {
       // Raises if the user has turned the warning into an error.
       py::module_::import("quadcore.support.warning").attr("warn")(simulation.warnings()[i]);
@@ -97,10 +99,10 @@ void raising_warnings(const Guarded& guarded, const Call& call) {
   try {
     call();
   } catch (...) {
-    raise();
+    finish();
     throw;
   }
-  if (simulation.warnings().size() > before) raise();
+  finish();
 }
 
 /// The simulation of a bound function.

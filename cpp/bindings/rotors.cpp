@@ -3,6 +3,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <limits>
 #include <optional>
 
 #include "arguments.hpp"
@@ -58,6 +59,27 @@ Speeds are those of a command, rad/s, before the division by `slowdown`.)")
           },
           "Index of the rotor's speed in a command; None if it follows no command.");
 
+  simulation.def_property_readonly(
+      "_command_limits",
+      [](const Self& self) {
+        VectorXd limits = VectorXd::Constant(static_cast<Eigen::Index>(self->command_width()),
+                                             std::numeric_limits<double>::infinity());
+        for (const RotorDescription& rotor : self->drives()) {
+          if (rotor.place != not_driven) limits[rotor.place] = rotor.fastest;
+        }
+        return limits;
+      },
+      "Maximum speed of each command that its motor follows, rad/s; shape (n,).");
+  simulation.def_property_readonly(
+      "_rates_per_command",
+      [](const Self& self) {
+        VectorXd rates(static_cast<Eigen::Index>(self->drives().size()));
+        for (Eigen::Index i = 0; i < rates.size(); ++i) {
+          rates[i] = self->drives()[static_cast<std::size_t>(i)].rate_per_command;
+        }
+        return rates;
+      },
+      "Steady-state joint velocity per commanded speed; shape (rotors,).");
   simulation.def_property_readonly(
       "rotors",
       [](const Self& self) {

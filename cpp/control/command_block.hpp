@@ -43,4 +43,8 @@ struct CommandBlock {
 template <int W>
 void command_block(const CommandBlock& block);
 
+/// The same for a block of one vehicle, with the instructions of processors with W lanes.
+template <int W>
+void command_single(const CommandBlock& block);
+
 }  // namespace quadcore::control

@@ -90,6 +90,12 @@ void command_block(const CommandBlock& block) {
   }
 }
 
+template <int W>
+void command_single(const CommandBlock& block) {
+  command<double>(block, 0);
+}
+
 template void command_block<QUADCORE_LANES>(const CommandBlock&);
+template void command_single<QUADCORE_LANES>(const CommandBlock&);
 
 }  // namespace quadcore::control

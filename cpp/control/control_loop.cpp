@@ -16,6 +16,7 @@ ControlLoop::ControlLoop(Simulation& simulation, Flight& flight, double rate, do
 }
 
 void ControlLoop::advance(std::int64_t n, const Call& call) {
+  flight_.make_room(n);
   while (n > 0) {
     const std::int64_t steps = prepare(n, call);
     flight_.advance(steps, &rates_);

@@ -11,14 +11,12 @@ FlatState flat_state(const Reference& wanted, const ModelledVehicle& model, bool
   FlatTable table(model, with_drag);
   table.set(0, wanted);
   table.solve(1);
-  std::optional<FlatState> flat;
-  table.get_state(0, flat);
-  if (!flat) {
+  if (!table.is_defined(0)) {
     throw Error(
         "the reference has no defined attitude: it is in free fall, or its thrust points along its "
         "own x axis.");
   }
-  return *flat;
+  return table.state(0);
 }
 
 Vector3d across_yaw(double yaw) {

@@ -1,6 +1,7 @@
 #include "flat_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lanes/for_each_width.hpp"
 #include "numbers.hpp"
@@ -25,7 +26,7 @@ FlatVehicle describe_flatly(const ModelledVehicle& model, bool with_drag) {
 }  // namespace
 
 FlatTable::FlatTable(const ModelledVehicle& model, bool with_drag)
-    : vehicle_(describe_flatly(model, with_drag)) {}
+    : vehicle_(describe_flatly(model, with_drag)), width_(lane_width(widest_lanes)) {}
 
 void FlatTable::set(std::size_t column, const Reference& wanted) {
   const auto put = [&](std::size_t row, const Vector3d& vector) {
@@ -35,9 +36,9 @@ void FlatTable::set(std::size_t column, const Reference& wanted) {
   put(FlatRow::acceleration, wanted.acceleration);
   put(FlatRow::jerk, wanted.jerk);
   put(FlatRow::snap, wanted.snap);
-  const auto [sine, cosine] = elementary::sincos(wanted.yaw);
-  *at(FlatRow::sine, column) = sine;
-  *at(FlatRow::cosine, column) = cosine;
+  if (wanted.yaw != turned_.yaw) turned_ = {wanted.yaw, elementary::sincos(wanted.yaw)};
+  *at(FlatRow::sine, column) = turned_.turn.sin;
+  *at(FlatRow::cosine, column) = turned_.turn.cos;
   *at(FlatRow::yaw_rate, column) = wanted.yaw_rate;
   *at(FlatRow::yaw_acceleration, column) = wanted.yaw_acceleration;
 }
@@ -45,28 +46,40 @@ void FlatTable::set(std::size_t column, const Reference& wanted) {
 void FlatTable::solve(std::size_t columns) {
   static constexpr laws::ForEachWidth<void(const FlatVehicle&, double*, std::size_t)> solves{
       &solve_flat_states<1>, &solve_flat_states<2>, &solve_flat_states<4>, &solve_flat_states<8>};
-  solves[columns == 1 ? 1 : lane_width(columns)](vehicle_, rows_, columns);
+  solves[columns == 1 ? 1 : width_](vehicle_, rows_, columns);
 }
 
-template <class Vector>
-void FlatTable::get(std::size_t row, std::size_t column, Vector&& vector) const {
-  for (int i = 0; i < 3; ++i) {
-    vector[i] = rows_[(row + static_cast<std::size_t>(i)) * widest_lanes + column];
-  }
+bool FlatTable::is_defined(std::size_t column) const {
+  bool all = true;
+  for (std::size_t i = 0; i < 9; ++i) all &= std::isfinite(number(FlatRow::R_WF + i, column));
+  return all;
 }
 
-void FlatTable::get_state(std::size_t column, std::optional<FlatState>& state) const {
-  FlatState& flat = state ? *state : state.emplace();
+FlatState FlatTable::state(std::size_t column) const {
+  FlatState flat;
   for (int i = 0; i < 3; ++i) {
-    get(FlatRow::R_WF + 3 * static_cast<std::size_t>(i), column, flat.R_WF.col(i));
+    flat.R_WF.col(i) = vector_of(vector(FlatRow::R_WF + 3 * static_cast<std::size_t>(i), column));
   }
-  if (!flat.R_WF.allFinite()) return state.reset();
-  get(FlatRow::w_WF_F, column, flat.w_WF_F);
-  get(FlatRow::dw_WF_F, column, flat.dw_WF_F);
-  get(FlatRow::a_FCcm_W, column, flat.a_FCcm_W);
-  flat.across_W << -rows_[FlatRow::sine * widest_lanes + column],
-      rows_[FlatRow::cosine * widest_lanes + column], 0;
-  flat.thrust = rows_[FlatRow::thrust * widest_lanes + column];
+  flat.w_WF_F = vector_of(vector(FlatRow::w_WF_F, column));
+  flat.dw_WF_F = vector_of(vector(FlatRow::dw_WF_F, column));
+  flat.a_FCcm_W = vector_of(vector(FlatRow::a_FCcm_W, column));
+  flat.across_W << -number(FlatRow::sine, column), number(FlatRow::cosine, column), 0;
+  flat.thrust = number(FlatRow::thrust, column);
+  return flat;
+}
+
+WantedNumbers<double> FlatTable::numbers(const Reference& wanted, std::size_t column) const {
+  const Vec3<double> x = vector(FlatRow::R_WF, column), y = vector(FlatRow::R_WF + 3, column),
+                     z = vector(FlatRow::R_WF + 6, column);
+  return {numbers_of(wanted.position),
+          numbers_of(wanted.velocity),
+          numbers_of(wanted.acceleration),
+          {-number(FlatRow::sine, column), number(FlatRow::cosine, column), 0},
+          {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z},
+          vector(FlatRow::w_WF_F, column),
+          vector(FlatRow::dw_WF_F, column),
+          vector(FlatRow::a_FCcm_W, column),
+          number(FlatRow::thrust, column)};
 }
 
 }  // namespace quadcore::control

@@ -1,9 +1,11 @@
 #pragma once
 
-#include <optional>
+#include <limits>
 
+#include "controller_numbers.hpp"
 #include "flat_states.hpp"
 #include "quadcore/control/flat_state.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
 
@@ -16,15 +18,29 @@ class FlatTable {
   void set(std::size_t column, const Reference& wanted);
   /// Compute the flat states of the first columns.
   void solve(std::size_t columns);
-  /// Write the flat state of a column, or nothing if the attitude is undefined.
-  void get_state(std::size_t column, std::optional<FlatState>& state) const;
+  /// Return whether the attitude of a column is defined.
+  bool is_defined(std::size_t column) const;
+  /// Return the flat state of a column.
+  FlatState state(std::size_t column) const;
+  /// Return the numbers of a reference with the flat state of its column.
+  WantedNumbers<double> numbers(const Reference& wanted, std::size_t column) const;
 
  private:
   double* at(std::size_t row, std::size_t column) { return &rows_[row * widest_lanes + column]; }
-  template <class Vector>
-  void get(std::size_t row, std::size_t column, Vector&& vector) const;
+  double number(std::size_t row, std::size_t column) const {
+    return rows_[row * widest_lanes + column];
+  }
+  Vec3<double> vector(std::size_t row, std::size_t column) const {
+    return {number(row, column), number(row + 1, column), number(row + 2, column)};
+  }
 
   FlatVehicle vehicle_;
+  int width_;  ///< how many columns are solved at once
+  /// The last yaw and its sine and cosine, because most references keep their yaw.
+  struct {
+    double yaw = std::numeric_limits<double>::quiet_NaN();
+    elementary::SineCosine turn{};
+  } turned_;
   double rows_[FlatRow::count * widest_lanes] = {};
 };
 

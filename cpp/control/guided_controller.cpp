@@ -1,7 +1,9 @@
 #include "quadcore/control/guided_controller.hpp"
 
+#include <optional>
 #include <utility>
 
+#include "flat_table.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/rotor_shares.hpp"
 
@@ -40,17 +42,19 @@ std::size_t GuidedController::find_odometry(const Topics& topics, const std::str
 
 void GuidedController::command(double period, std::size_t odometry, const ReferenceShape& reference,
                                const ReferencePreview::ListTimes& list_times, double* speeds) {
-  const auto now = simulation_.topics().read<Odometry>(odometry);
+  const double* const now = simulation_.topics()[odometry].values.data();
   const ReferencePreview::Point& point = preview_.at(simulation_.time(), reference, list_times);
   hear_of_health();
   double* const state = state_.data();
   const bool is_defined = point.flat || controller_.feeds() == WrenchController::Feeds::nothing;
-  if (is_defined && controller_.has_whole_rotors(state) &&
-      single_lane_.prepare(period, controller_, state)) {
+  const bool is_whole = health_ < 0 || controller_.has_whole_rotors(state);
+  if (is_defined && is_whole && single_lane_.prepare(period, controller_, state)) {
     return single_lane_.command(controller_, now, point, state, speeds);
   }
-  controller_.command(period, now, point.wanted, state, speeds,
-                      point.flat ? &*point.flat : nullptr);
+  std::optional<FlatState> flat;
+  if (point.flat) flat = point.flat->state(point.column);
+  controller_.command(period, messages::read<Odometry>(now), point.wanted, state, speeds,
+                      flat ? &*flat : nullptr);
 }
 
 void GuidedController::command(double period, const Odometry& now, const Reference& wanted,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "flat_table.hpp"
+
 namespace quadcore::control {
 
 AirNumbers<double> numbers_of(const AirResistance& air) {
@@ -51,6 +53,11 @@ WantedNumbers<double> numbers_of(const Reference& wanted, const FlatState* flat)
   numbers.a_FCcm_W = numbers_of(flat->a_FCcm_W);
   numbers.thrust = flat->thrust;
   return numbers;
+}
+
+WantedNumbers<double> numbers_of(const ReferencePreview::Point& wanted) {
+  return wanted.flat ? wanted.flat->numbers(wanted.wanted, wanted.column)
+                     : numbers_of(wanted.wanted, nullptr);
 }
 
 Demand demand_of(const DemandNumbers<double>& demand) {

@@ -6,6 +6,7 @@
 #include "attitude_formulas.hpp"
 #include "lane_controller.hpp"
 #include "quadcore/control/attitude_loop.hpp"
+#include "quadcore/control/reference_preview.hpp"
 #include "quadcore/control/wrench_controller.hpp"
 
 /// \file
@@ -42,6 +43,7 @@ AttitudeNumbers<double> numbers_of(const AttitudeGains& gains);
 MeasuredNumbers<double> numbers_of(const Odometry& now);
 /// \param flat  null for a control law that does not use it
 WantedNumbers<double> numbers_of(const Reference& wanted, const FlatState* flat);
+WantedNumbers<double> numbers_of(const ReferencePreview::Point& wanted);
 Demand demand_of(const DemandNumbers<double>& demand);
 
 /// Call a control law with the numbers of its input and return its demand.

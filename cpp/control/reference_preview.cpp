@@ -37,7 +37,10 @@ void ReferencePreview::look_ahead(const ReferenceShape& reference, const ListTim
     if (table_) table_->set(i, points_[i].wanted);
   }
   if (table_) table_->solve(count);
-  for (std::size_t i = 0; table_ && i < count; ++i) table_->get_state(i, points_[i].flat);
+  for (std::size_t i = 0; i < count; ++i) {
+    points_[i].flat = table_ && table_->is_defined(i) ? table_.get() : nullptr;
+    points_[i].column = i;
+  }
   reference_ = &reference;
 }
 

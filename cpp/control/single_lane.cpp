@@ -1,9 +1,14 @@
 #include "quadcore/control/single_lane.hpp"
 
+#include "flat_table.hpp"
 #include "lane_controller.hpp"
+#include "lanes/for_each_width.hpp"
 #include "numbers.hpp"
+#include "quadcore/lane_width.hpp"
 
 namespace quadcore::control {
+
+static_assert(size_of<MeasuredNumbers> == 13, "These are the first values of odometry.");
 
 bool SingleLane::prepare(double period, const Controller& controller, double* state) {
   if (period != period_) lanes_ = controller.in_lanes(period);
@@ -12,22 +17,21 @@ bool SingleLane::prepare(double period, const Controller& controller, double* st
   return lanes_ != nullptr;
 }
 
-void SingleLane::command(const Controller& controller, const Odometry& now,
+void SingleLane::command(const Controller& controller, const double* now,
                          const ReferencePreview::Point& wanted, double* state,
                          double* speeds) const {
-  const MeasuredNumbers<double> measured = numbers_of(now);
-  const WantedNumbers<double> reference =
-      numbers_of(wanted.wanted, wanted.flat ? &*wanted.flat : nullptr);
+  static constexpr laws::ForEachWidth<void(const CommandBlock&)> calls{
+      &command_single<1>, &command_single<2>, &command_single<4>, &command_single<8>};
+  static const auto call = calls[lane_width(widest_lanes)];
+  const WantedNumbers<double> reference = numbers_of(wanted);
   DemandNumbers<double> demand;
   std::int64_t is_complete;
   const auto numbers = [](auto& of) { return reinterpret_cast<double*>(&of); };
-  const auto inputs = [](const auto& of) { return reinterpret_cast<const double*>(&of); };
-  command_block<1>({lanes_->wrench_controller.kind, lanes_->wrench_controller.switches, 1,
-                    lanes_->rotors, lanes_->wrench_controller.numbers.size(), lanes_->state.size(),
-                    period_, !Controller::has_begun(state),
-                    lanes_->wrench_controller.numbers.data(), lanes_->actuators.data(),
-                    inputs(measured), inputs(reference), state, numbers(demand), speeds,
-                    &is_complete});
+  call({lanes_->wrench_controller.kind, lanes_->wrench_controller.switches, 1, lanes_->rotors,
+        lanes_->wrench_controller.numbers.size(), lanes_->state.size(), period_,
+        !Controller::has_begun(state), lanes_->wrench_controller.numbers.data(),
+        lanes_->actuators.data(), now, reinterpret_cast<const double*>(&reference), state,
+        numbers(demand), speeds, &is_complete});
   if (is_complete == 0) controller.act(period_, demand_of(demand), state, speeds);
 }
 

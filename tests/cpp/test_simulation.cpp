@@ -100,3 +100,33 @@ TEST_CASE("a flight ends where a speed, a rate or a distance is beyond all that 
     check("eigen", [i](VehicleState& s) -> double& { return s.angular_velocity[i]; }, 1e6);
   }
 }
+
+TEST_CASE(
+    "state and summed joint rates are the same, requested after each step or once at the end") {
+  const std::vector<double> command = {700, -650, 700, -700, 650, -700};
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    Simulation often = still(info.name, 1e-3, true), once = still(info.name, 1e-3, true);
+    std::vector<double> last(6, 0.0), sums(6, 0.0);
+    TotalVariation rates(6);
+    rates.add(last.data());
+    once.command(command.data(), command.size());
+    often.command(command.data(), command.size());
+    once.step(50, &rates);
+    for (int step = 0; step < 50; ++step) {
+      often.step();
+      for (std::size_t i = 0; i < 6; ++i) {
+        const double size = std::abs(often.state().rotor_velocity[static_cast<Eigen::Index>(i)]);
+        sums[i] += std::abs(size - last[i]);
+        last[i] = size;
+      }
+    }
+    CHECK(rates.sums() == sums);
+    CHECK(sums.front() > 0);
+    CHECK(once.state().time == often.time());
+    CHECK(once.state().position == often.state().position);
+    CHECK(once.state().linear_velocity == often.state().linear_velocity);
+    CHECK(once.state().rotor_velocity == often.state().rotor_velocity);
+    CHECK(once.state().rotor_angle == often.state().rotor_angle);
+  }
+}

@@ -73,10 +73,7 @@ class ControllerPilot(ReferencePilot):
         self._timed = timed
         self._loop: Optional[_core.ControlLoop] = None
         self._reported = 0  # saturated calls of a built-in controller that Python calls
-        self._limits = np.full(simulation.command_width, np.inf)
-        for rotor in simulation.rotors:
-            if rotor.command_index is not None:
-                self._limits[rotor.command_index] = rotor.max_speed
+        self._limits = simulation._command_limits
         sensed = simulation.topics.get(SENSED)
         if sensed is None or sensed.kind != "odometry":
             raise InputError(

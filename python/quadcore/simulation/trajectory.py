@@ -19,7 +19,7 @@ _STATE_SIZE = len(log_columns(0))
 
 def per_command(simulation: Simulation) -> float:
     """Return the ratio of joint velocity to commanded speed; 1 if rotors differ."""
-    sizes = {abs(rotor.rate_per_command) for rotor in simulation.rotors}
+    sizes = {abs(rate) for rate in simulation._rates_per_command.tolist()}
     return sizes.pop() if len(sizes) == 1 else 1.0
 
 

@@ -2,6 +2,7 @@
 
 #include "flat_table.hpp"
 #include "modelled_vehicles.hpp"
+#include "numbers.hpp"
 #include "quadcore/control/flat_state.hpp"
 
 using namespace quadcore;
@@ -136,15 +137,16 @@ TEST_CASE("flat states of several references are bit-identical to those of each 
       table.solve(widest_lanes);
       for (std::size_t i = 0; i < widest_lanes; ++i) {
         CAPTURE(i);
-        std::optional<FlatState> one;
-        table.get_state(i, one);
-        REQUIRE(one);
-        const FlatState alone = flat_state(wanted(i), model, with_drag);
-        CHECK(one->R_WF == alone.R_WF);
-        CHECK(one->w_WF_F == alone.w_WF_F);
-        CHECK(one->dw_WF_F == alone.dw_WF_F);
-        CHECK(one->a_FCcm_W == alone.a_FCcm_W);
-        CHECK(one->thrust == alone.thrust);
+        REQUIRE(table.is_defined(i));
+        const FlatState one = table.state(i), alone = flat_state(wanted(i), model, with_drag);
+        CHECK(one.R_WF == alone.R_WF);
+        CHECK(one.w_WF_F == alone.w_WF_F);
+        CHECK(one.dw_WF_F == alone.dw_WF_F);
+        CHECK(one.a_FCcm_W == alone.a_FCcm_W);
+        CHECK(one.thrust == alone.thrust);
+        CHECK(one.across_W == across_yaw(wanted(i).yaw));
+        CHECK(list_numbers(table.numbers(wanted(i), i)) ==
+              list_numbers(numbers_of(wanted(i), &alone)));
       }
     }
   }
@@ -157,9 +159,6 @@ TEST_CASE("a reference without a defined attitude has no flat state next to othe
   table.set(0, falling);
   table.set(1, Reference());
   table.solve(2);
-  std::optional<FlatState> flat;
-  table.get_state(0, flat);
-  CHECK_FALSE(flat);
-  table.get_state(1, flat);
-  CHECK(flat);
+  CHECK_FALSE(table.is_defined(0));
+  CHECK(table.is_defined(1));
 }

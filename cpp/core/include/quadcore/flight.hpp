@@ -36,6 +36,8 @@ class Flight {
   /// Simulate n steps, each with the command that is due at its start. Throws like step(); logged
   /// rows remain. The rates are those of Simulation::step().
   void advance(std::int64_t n, TotalVariation* rates = nullptr);
+  /// Allocate the memory for the rows of n more steps.
+  void make_room(std::int64_t n);
 
   /// \name Parts of advance(), for vehicles that a Fleet advances
   /// @{
@@ -58,7 +60,7 @@ class Flight {
   bool log_wrenches_;
   std::vector<std::size_t> topics_;
   std::size_t row_size_ = 0, wrenches_size_ = 0;  ///< number of values in a row
-  std::int64_t steps_ = 0;
+  std::int64_t steps_to_row_ = log_every_;
   LogRows rows_;
 };
 

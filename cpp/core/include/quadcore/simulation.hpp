@@ -113,12 +113,18 @@ class Simulation : private ForceField {
   std::size_t rotor_count() const { return model_.joints.size(); }
   /// Return the names of the rotor joints, in the order of all rotor quantities.
   std::vector<std::string> rotor_names() const { return model_.joint_names(); }
+  /// Return the description of each joint by the plugin that drives it. It lacks what
+  /// describe_vehicle() measures.
+  const std::vector<RotorDescription>& drives() const { return drives_; }
   /// Return the world.
   const World& world() const { return world_; }
   /// Return the fingerprint of everything that a flight depends on in addition to its state.
   const Fingerprint& fingerprint() const { return *fingerprint_; }
-  /// Return the present state. The next step changes it.
-  const VehicleState& state() const { return state_; }
+  /// Return the present state, which is computed on request. Call this again after a step.
+  const VehicleState& state() const {
+    if (is_outdated_) show_state();
+    return state_;
+  }
   /// Return the topics of plugins and callers.
   const Topics& topics() const { return topics_; }
   /// Return the plugins in the order of the URDF.
@@ -195,9 +201,9 @@ class Simulation : private ForceField {
   void check_flight() const;
   /// Return advice on a diverged motion, or the last warning of this flight.
   std::string advice() const;
-  void move();          ///< advances one step by motion_
-  void show_state();    ///< updates state_
-  void show_instant();  ///< writes time and air velocity into the engine's motion
+  void move();              ///< advances one step by motion_
+  void show_state() const;  ///< updates state_
+  void show_instant();      ///< writes time and air velocity into the engine's motion
   void blow(Kinematics& kinematics) const;
   void push(const std::vector<const LoadedPlugin*>& plugins, const Kinematics& kinematics,
             Loads& loads) const;
@@ -247,8 +253,9 @@ class Simulation : private ForceField {
         carried;
   } with_;
   ForceLaws laws_;
-  std::vector<double> radii_;  ///< RotorDescription::radius of each rotor [m]
-  bool windy_ = false;         ///< whether the air may move
+  std::vector<double> radii_;             ///< RotorDescription::radius of each rotor [m]
+  std::vector<RotorDescription> drives_;  ///< see drives()
+  bool windy_ = false;                    ///< whether the air may move
   std::vector<std::string> wrench_terms_;
   std::unique_ptr<Engine> engine_;
   std::vector<CarriedBody> carried_;  ///< bodies attached in the engine's model
@@ -259,7 +266,8 @@ class Simulation : private ForceField {
   double start_time_ = 0;
   std::int64_t steps_ = 0;
   VectorXd plugin_state_;
-  VehicleState state_;
+  mutable VehicleState state_;                    ///< see state()
+  mutable bool is_outdated_ = false;              ///< whether steps followed state_
   VehicleState start_;                            ///< state in which the simulation was made
   std::string failure_;                           ///< reason of a failure, or ""
   mutable const LoadedPlugin* active_ = nullptr;  ///< plugin whose hook is running, for errors

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
+
+#include "quadcore/plugin/rotor_rows.hpp"
 
 namespace quadcore {
 
@@ -14,17 +17,15 @@ class TotalVariation {
 
   /// Add the next values of the numbers.
   void add(const double* values) {
-    add_each([values](std::size_t i) { return values[i]; });
+    add(values, 0, sums_.size());
+    is_first_ = false;
   }
-  /// Add the next values; value(i) returns that of number i.
-  template <class Value>
-  void add_each(const Value& value) {
-    double *const last = last_.data(), *const sums = sums_.data();
-    const std::size_t count = sums_.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const double size = std::abs(value(i));
-      if (!is_first_) sums[i] += std::abs(size - last[i]);
-      last[i] = size;
+  /// Add the next values, which are a row of a table.
+  template <std::size_t rows>
+  void add_row(const RotorRows<rows>& table, std::size_t row) {
+    for (std::size_t i = 0; i < sums_.size(); i += widest_lanes) {
+      add(table.data() + rotor_offset(rows, i) + row * widest_lanes, i,
+          std::min(sums_.size() - i, widest_lanes));
     }
     is_first_ = false;
   }
@@ -32,6 +33,16 @@ class TotalVariation {
   const std::vector<double>& sums() const { return sums_; }
 
  private:
+  /// Add the next values of some numbers from the given one on.
+  void add(const double* values, std::size_t first, std::size_t count) {
+    double *const last = last_.data() + first, *const sums = sums_.data() + first;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double size = std::abs(values[i]);
+      if (!is_first_) sums[i] += std::abs(size - last[i]);
+      last[i] = size;
+    }
+  }
+
   std::vector<double> last_, sums_;
   bool is_first_ = true;
 };

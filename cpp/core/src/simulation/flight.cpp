@@ -11,7 +11,7 @@ namespace {
 
 /// Reserve room for more values, at least doubling the capacity so that short pieces do not copy
 /// all.
-void make_room(std::vector<double>& numbers, std::size_t more) {
+void reserve_more(std::vector<double>& numbers, std::size_t more) {
   const std::size_t needed = numbers.size() + more;
   if (needed > numbers.capacity()) numbers.reserve(std::max(needed, 2 * numbers.capacity()));
 }
@@ -33,10 +33,13 @@ Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::in
   wrenches_size_ = rows_.wrenches.size();
 }
 
-void Flight::advance(std::int64_t n, TotalVariation* rates) {
+void Flight::make_room(std::int64_t n) {
   const auto rows = static_cast<std::size_t>(std::max<std::int64_t>(n, 0) / log_every_ + 1);
-  make_room(rows_.table, rows * row_size_);
-  make_room(rows_.wrenches, rows * wrenches_size_);
+  reserve_more(rows_.table, rows * row_size_);
+  reserve_more(rows_.wrenches, rows * wrenches_size_);
+}
+
+void Flight::advance(std::int64_t n, TotalVariation* rates) {
   while (n > 0) {
     const std::int64_t steps = prepare(n);
     simulation_.step(steps, rates);
@@ -46,15 +49,17 @@ void Flight::advance(std::int64_t n, TotalVariation* rates) {
 }
 
 std::int64_t Flight::prepare(std::int64_t n) {
-  if (!commands_) return std::min(n, log_every_ - steps_ % log_every_);
+  if (!commands_) return std::min(n, steps_to_row_);
   const double* speeds = commands_->at(simulation_.time());
   if (speeds) simulation_.command(speeds, simulation_.command_width());
   return 1;
 }
 
 void Flight::finish(std::int64_t steps) {
-  steps_ += steps;
-  if (steps_ % log_every_ == 0) log();
+  steps_to_row_ -= steps;
+  if (steps_to_row_ > 0) return;
+  steps_to_row_ = log_every_;
+  log();
 }
 
 LogRows Flight::take() { return std::exchange(rows_, LogRows()); }

@@ -218,6 +218,7 @@ void Simulation::check_drivers() {
   const std::size_t joints = model_.joints.size();
   std::vector<const LoadedPlugin*> drivers(joints, nullptr);
   radii_.assign(joints, std::numeric_limits<double>::quiet_NaN());
+  drives_.resize(joints);
   for (const LoadedPlugin& p : plugins_) {
     std::vector<RotorDescription> rotors(joints);
     active_ = &p;
@@ -233,6 +234,7 @@ void Simulation::check_drivers() {
                          ") already drives. Keep one of them.");
       }
       drivers[i] = &p;
+      drives_[i] = rotor;
     }
   }
 }

@@ -84,12 +84,9 @@ void Simulation::step(std::int64_t n, TotalVariation* rates) {
         engine_->step(time(), dt_, *this);
       }
       end_step();
-      if (rates) {
-        const RotorMotions& rotors = engine_->kinematics().rotors;
-        rates->add_each([&rotors](std::size_t i) { return rotors.number(MotionRow::rate, i); });
-      }
+      if (rates) rates->add_row(engine_->kinematics().rotors, MotionRow::rate);
     }
-    show_state();
+    is_outdated_ = true;
   } catch (...) {
     fail(what_was_thrown());
   }
@@ -139,9 +136,10 @@ void Simulation::fail(const std::string& what) {
   throw FlightError(time(), failure_);
 }
 
-void Simulation::show_state() {
+void Simulation::show_state() const {
   engine_->get_state(state_);
   state_.time = time();
+  is_outdated_ = false;
 }
 
 void Simulation::check_flight() const {

@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "quadcore/control/controller.hpp"
@@ -20,9 +19,12 @@ class ReferencePreview {
  public:
   /// A point of the reference.
   struct Point {
-    double time;                    ///< s
-    Reference wanted;               ///< reference at this time
-    std::optional<FlatState> flat;  ///< its flat state, if the controller uses it and it is defined
+    double time;       ///< s
+    Reference wanted;  ///< reference at this time
+    /// Table that contains its flat state until the next points are computed; null if the
+    /// controller uses none or it is undefined.
+    const FlatTable* flat;
+    std::size_t column;  ///< of the table
   };
   /// Writes the times of the present call and of the next ones if the flight goes on [s].
   using ListTimes = std::function<void(double* times, std::size_t count)>;

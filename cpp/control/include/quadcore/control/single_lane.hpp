@@ -15,9 +15,10 @@ class SingleLane {
   /// \param period  time since the last call and until the next [s]
   bool prepare(double period, const Controller& controller, double* state);
   /// Compute the speeds to command until the next call.
+  /// \param now     values of an odometry message
   /// \param wanted  with the flat state, if the controller uses it
   /// \param state, speeds  see Controller::command()
-  void command(const Controller& controller, const Odometry& now,
+  void command(const Controller& controller, const double* now,
                const ReferencePreview::Point& wanted, double* state, double* speeds) const;
 
  private:
