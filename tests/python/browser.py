@@ -1,23 +1,13 @@
-"""A browser without a window, to see what pages do."""
+"""What pages do and how they look in a browser."""
 
 from __future__ import annotations
 
-import html
 import json
-import os
-import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
+from chromium import FONTS, start_browser
 
-# Readers' browsers have narrow fonts or wide ones; scripts/test installs these.
-FONTS = {  # proportional twice: sans-serif, system-ui; monospace
-    "narrow": ("FreeSans", "FreeSans", "FreeMono"),
-    "wide": ("DejaVu Sans", "DejaVu Sans", "DejaVu Sans Mono"),
-}
-NAMES = ("chromium", "chromium-browser", "google-chrome")
 CATCH = """<script>
 window.faults = [];
 window.onerror = (what) => faults.push(what);
@@ -26,7 +16,6 @@ for (const name of ["log", "info", "warn", "error", "debug"])
   console[name] = (...what) => faults.push(`console.${name}: ${what.join(" ")}`);
 </script>"""
 AXE = Path(__file__).resolve().parents[2] / "web/node_modules/axe-core/axe.min.js"
-DARK = "--blink-settings=preferredColorScheme=0"
 WHEN_READY = """<script>
 window.addEventListener("load", async () => {
   const result = {};
@@ -38,10 +27,7 @@ window.addEventListener("load", async () => {
   } catch (fault) {
     window.faults.push(String(fault.stack || fault));
   }
-  const element = document.createElement("pre");
-  element.id = "result";
-  element.textContent = JSON.stringify({result, faults: window.faults});
-  document.body.append(element);
+  answer(JSON.stringify({result, faults: window.faults}));
 });
 </script>"""
 
@@ -55,8 +41,15 @@ async function opened(url, width) {
   const loaded = new Promise((resolve) => (frame.onload = resolve));
   document.body.append(frame);
   await loaded;
-  if (frame.contentWindow.MathJax) await frame.contentWindow.MathJax.startup.promise;
+  const { contentWindow: view, contentDocument: inside } = frame;
+  if (view.MathJax) await view.MathJax.startup.promise;
+  while (inside.querySelector(".quadcore-player") && !view.quadcore)
+    await new Promise((resolve) => setTimeout(resolve, 10));
+  if (view.quadcore) await view.quadcore.ready;
   return frame;
+}
+async function nextFrame(view) {
+  for (let i = 0; i < 2; ++i) await new Promise((resolve) => view.requestAnimationFrame(resolve));
 }
 window.onload = async () => {
   try {
@@ -64,7 +57,7 @@ window.onload = async () => {
       const frame = await opened(url, widths[0]);
       for (const width of widths) {
         frame.style.width = `${width}px`;
-        if (width != widths[0]) await new Promise((resolve) => setTimeout(resolve, 100));
+        if (width != widths[0]) await nextFrame(frame.contentWindow);
         result[`${name} ${width}`] = await look(frame.contentWindow, frame.contentDocument, width);
       }
       frame.remove();
@@ -72,10 +65,7 @@ window.onload = async () => {
   } catch (fault) {
     window.faults.push(String(fault));
   }
-  const element = document.createElement("pre");
-  element.id = "result";
-  element.textContent = JSON.stringify({result, faults: window.faults});
-  document.body.append(element);
+  answer(JSON.stringify({result, faults: window.faults}));
 };
 """
 
@@ -106,11 +96,8 @@ function look(view, inside, width) {
 
 AUDIT = """
 async function look(view, inside) {
-  while (inside.querySelector(".quadcore-player") && !view.quadcore)
-    await new Promise((resolve) => setTimeout(resolve, 10));
-  if (view.quadcore) await view.quadcore.ready;
   for (const fold of inside.querySelectorAll("details")) fold.open = true;
-  await new Promise((resolve) => setTimeout(resolve, 100));
+  await nextFrame(view);
   const seen = { exclude: [[".plot > svg > g"]] };  // drawings have names
   const dark = view.matchMedia("(prefers-color-scheme: dark)").matches;
   // Dark pages differ in colours alone.
@@ -138,8 +125,12 @@ async function look(view, inside) {
   }
   while (!view.quadcore) await new Promise((resolve) => setTimeout(resolve, 10));
   await view.quadcore.ready;
-  let frames = 0;  // of a screen that there is not: 10 in a second
-  view.requestAnimationFrame = (draw) => view.setTimeout(() => draw(100 * ++frames), 100);
+  let now = 0, waiting = [];  // for frames of a screen that there is not: 5 in a second
+  const pass = () => { now += 200; for (const draw of waiting.splice(0)) draw(now); };
+  view.requestAnimationFrame = (draw) => {
+    if (!waiting.length) view.setTimeout(pass, 0);
+    return waiting.push(draw);
+  };
   const part = (name) => inside.querySelector(".quadcore-player " + name), canvas = part("canvas");
   const { scene } = view.quadcore.players[0];
   const time = () => Number(part(".time").value);
@@ -176,27 +167,26 @@ def run_script(page, script, folder):
 
     A fault of the page's own scripts, or of this one, fails the test.
     """
-    tell = (
-        f"<script>const result = {{}};\n{script}\nconst element = document.createElement('pre');\n"
-        "element.id = 'result'; element.textContent = JSON.stringify({result, faults});\n"
-        "document.body.append(element);</script>"
-    )
+    tell = f"""<script>
+    window.addEventListener("load", () => answer(JSON.stringify({{result, faults}})));
+    const result = {{}};
+    {script}
+    </script>"""
     return open_page(
         page.replace("<head>", "<head>" + CATCH).replace("</body>", tell + "</body>"), folder
     )
 
 
-def run_script_when_ready(page, script, folder, *options):
+def run_script_when_ready(page, script, folder, dark=False):
     """As `run_script`, once the players of the page have started; the script may wait for promises.
 
     Lines in the console count as faults.
     """
     tell = CATCH + WHEN_READY.replace("SCRIPT", script)
-    whole = page.replace("<head>", "<head>" + tell)
-    return open_page(whole, folder, "--virtual-time-budget=60000", *options)
+    return open_page(page.replace("<head>", "<head>" + tell), folder, dark, scale=0.5)
 
 
-def find_violations(page, folder, *options):
+def find_violations(page, folder, dark=False):
     """What axe-core finds serious or critical in a page: rule and element of each."""
     if not AXE.exists():
         pytest.skip("needs axe-core; scripts/bundle_player installs it")
@@ -207,12 +197,12 @@ def find_violations(page, folder, *options):
       ({ id, nodes }) => `${id}: ${nodes[0].html} ${nodes[0].failureSummary}`);
     """
     axe = f"<head><script>{AXE.read_text(encoding='utf-8')}</script>"
-    found = run_script_when_ready(page.replace("<head>", axe, 1), script, folder, *options)
-    assert found["dark"] == (DARK in options)
+    found = run_script_when_ready(page.replace("<head>", axe, 1), script, folder, dark)
+    assert found["dark"] == dark
     return found["found"]
 
 
-def look_at_pages(look, files, widths, folder, fonts="wide", options=(), once=False):
+def look_at_pages(look, files, widths, folder, fonts="wide", dark=False, once=False, scale=1.0):
     """Open files at some widths (px): what a script finds in each, by (file, width).
 
     Opened once, a file is resized from width to width.
@@ -221,9 +211,7 @@ def look_at_pages(look, files, widths, folder, fonts="wide", options=(), once=Fa
     pages = [(str(file), file.as_uri(), opening) for file in files for opening in openings]
     script = f"const PAGES = {json.dumps(pages)};{IN_FRAMES}{look}"
     whole = f"<html><head>{CATCH}<script>{script}</script></head><body></body></html>"
-    # As much time as the pages want; none passes while nothing happens.
-    needed = "--allow-file-access-from-files", "--virtual-time-budget=1000000"
-    found = open_page(whole, folder, *needed, *options, fonts=fonts)
+    found = open_page(whole, folder, dark, fonts, scale)
     return {
         (name, width): found[f"{name} {width}"] for name, _, opening in pages for width in opening
     }
@@ -256,51 +244,24 @@ def audit_pages(files, folder, dark=False):
         copy = folder / f"audited_{number}.html"
         copy.write_text(file.read_text(encoding="utf-8").replace("<head>", head, 1))
         copies[str(copy)] = file
-    options = [DARK] if dark else []
-    found = look_at_pages(AUDIT, map(Path, copies), [1280], folder, options=options)
+    found = look_at_pages(AUDIT, map(Path, copies), [1280], folder, dark=dark, scale=0.5)
     assert all(each.pop("dark") == dark for each in found.values())
     return {copies[name]: each for (name, _), each in found.items()}
 
 
 def assert_it_plays(file, widths, folder):
     """The player in a page, or in the page within that, flies from the beginning to the end."""
-    for found in look_at_pages(PLAY, [file], widths, folder).values():
+    for found in look_at_pages(PLAY, [file], widths, folder, scale=0.5).values():
         assert len({found["start"], found["flying"], found["end"]}) == 3
         assert found["begin"] == 0 and found["says"] == found["again"] == "Pause"
         assert found["held"] == found["still"] and found["held"][0] == "Play"
         assert found["clock"] == "{0:.2f} of {0:.2f} s".format(found["ended"])
 
 
-def choose_fonts(fonts, folder):
-    """Write a configuration of fontconfig in which generic names stand for one set of fonts."""
-    generic = zip(("sans-serif", "system-ui", "monospace"), FONTS[fonts])
-    aliases = "".join(
-        f"<alias><family>{name}</family><prefer><family>{font}</family></prefer></alias>"
-        for name, font in generic
-    )
-    file = folder / f"{fonts}.conf"
-    file.write_text(
-        f"<fontconfig><dir>/usr/share/fonts</dir><cachedir>{folder}/{fonts}</cachedir>"
-        f"{aliases}</fontconfig>"
-    )
-    return file
-
-
-def open_page(page, folder, *options, fonts="wide"):
-    """What a page has written into its element #result."""
-    program = next(filter(None, map(shutil.which, NAMES)), None)
-    if program is None:
-        pytest.skip(f"needs a browser, one of {', '.join(NAMES)}; scripts/test installs one")
+def open_page(page, folder, dark=False, fonts="wide", scale=1.0):
+    """What a page gives to its function `answer`: an object `result`, and faults."""
     file = folder / "opened.html"
     file.write_text(page, encoding="utf-8")
-    answer = subprocess.run(
-        [program, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/user",
-         "--window-size=1000,900", *options, "--dump-dom", file.as_uri()],
-        env={**os.environ, "FONTCONFIG_FILE": str(choose_fonts(fonts, folder))},
-        capture_output=True, check=True, timeout=1200,
-    )  # fmt: skip
-    found = re.search(r'<pre id="result">(.*?)</pre>', answer.stdout.decode(), re.DOTALL)
-    assert found, answer.stderr.decode()[-2000:]
-    content = json.loads(html.unescape(found.group(1)))
+    content = json.loads(start_browser(fonts).open(file.as_uri(), dark, scale))
     assert content["faults"] == []
     return content["result"]

@@ -11,7 +11,7 @@ import zlib
 
 import numpy as np
 import pytest
-from browser import DARK, find_violations, run_script_when_ready
+from browser import find_violations, run_script_when_ready
 from scipy.spatial.transform import Rotation, Slerp
 
 import quadcore as qc
@@ -392,7 +392,7 @@ def test_two_players_on_one_page_keep_apart(tmp_path):
     assert found["clocks"] == ["2.00 of 4.00 s", "0.00 of 1.00 s"]
 
 
-@pytest.mark.parametrize("mode", [(), (DARK,)])
-def test_axe_finds_nothing_serious(mode, tmp_path):
+@pytest.mark.parametrize("dark", [False, True])
+def test_axe_finds_nothing_serious(dark, tmp_path):
     flights = [PlayerFlight("a", flown()), PlayerFlight("b", flown(shift=1.0))]
-    assert find_violations(make_page(flights), tmp_path, *mode) == []
+    assert find_violations(make_page(flights), tmp_path, dark) == []

@@ -65,8 +65,8 @@ def test_table_and_scene_show_wind_and_payload(tmp_path):
       wind: scene.actors[0].wind.arrow.visible,
       payload: scene.actors[0].payloads.map((payload) => payload.group.visible),
     });
-    result.start = look(); player.go(0.5); result.laden = look(); player.go(2);
-    result.free = look();
+    const lookAt = (t) => { player.go(t); scene.render(); return look(); };
+    result.start = lookAt(0); result.laden = lookAt(0.5); result.free = lookAt(2);
     result.shown = [shows("wind"), shows("load")];
     result.plots = player.plots.content.map((panel) => panel.name);
     """

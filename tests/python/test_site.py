@@ -108,6 +108,7 @@ FOUND = {
 SEARCH = """
 async function look(view, inside) {
   const found = {};
+  view.eval("DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false");  // fetches each page found
   for (const query of Object.keys(QUERIES)) {
     inside.querySelector("#search-results").replaceChildren();
     view.eval(`Search.performSearch(${JSON.stringify(query)})`);

@@ -32,6 +32,7 @@ class Player {
     const wanted = /^#t=([0-9.]+)$/.exec(location.hash);  // a link to a moment
     this.go(wanted ? Number(wanted[1]) : this.begin);
     this.scene.setCamera(content.camera);
+    this.scene.resize();
     if (this.isLive) this.follow(content);
   }
 
@@ -184,7 +185,7 @@ class Player {
     this.play(false);
     const was = this.time;
     try {
-      return makeGif(this.scene, this.begin, this.end, (t) => this.scene.show(t));
+      return makeGif(this.scene, this.begin, this.end);
     } finally {
       this.go(was);
     }
@@ -257,9 +258,7 @@ class Player {
   }
 
   resize() {
-    this.scene.resize();
-    this.plots.resize();
-    this.draw();
+    if (this.scene.resize()) this.plots.resize();
   }
 
   // ---- a flight that goes on ----

@@ -97,6 +97,7 @@ export class Plots {
 
   resize() {
     for (const plot of this.plots) plot.setSize({ width: Math.max(200, this.holder.clientWidth), height: HEIGHT });
+    this.show(this.time);
   }
 
   /** Return the time under a pointer, or null beside the plots. */

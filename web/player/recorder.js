@@ -7,7 +7,7 @@ const RATE = 15;  // frames per second
 const LONGEST = 20;  // s; a longer flight plays faster
 
 /** Draw a flight frame by frame; returns the bytes of a GIF. */
-export function makeGif(scene, begin, end, ground) {
+export function makeGif(scene, begin, end) {
   const speed = Math.max(1, (end - begin) / LONGEST);
   const frames = Math.max(2, Math.round((end - begin) / speed * RATE) + 1);
   const encoder = GIFEncoder();
@@ -16,7 +16,8 @@ export function makeGif(scene, begin, end, ground) {
   scene.setSize(WIDTH, HEIGHT, 1);
   try {
     for (let i = 0; i < frames; ++i) {
-      ground(begin + (end - begin) * i / (frames - 1));
+      scene.show(begin + (end - begin) * i / (frames - 1));
+      scene.render();
       context.readPixels(0, 0, WIDTH, HEIGHT, context.RGBA, context.UNSIGNED_BYTE, pixels);
       for (let row = 0; row < HEIGHT; ++row) {
         const from = 4 * WIDTH * (HEIGHT - 1 - row);

@@ -30,14 +30,13 @@ export class Scene {
     this.eye = new THREE.PerspectiveCamera(40, 1, 0.01, 1e5);
     this.eye.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.eye, this.canvas);
-    this.controls.addEventListener("change", () => this.render());
+    this.controls.addEventListener("change", () => this.redraw());
     this.#light();
     this.hasGround = content.ground;
     this.obstacles = content.obstacles.map((obstacle) => this.#addObstacle(obstacle));
     this.actors = flights.map((flight, number) => this.#addActor(flight, number, content));
     this.setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
     this.measure();
-    this.resize();
     this.setCamera(content.camera);
   }
 
@@ -168,14 +167,14 @@ export class Scene {
     this.eye.position.copy(this.controls.target).addScaledVector(
       new THREE.Vector3(...directions[name]).normalize(), distance);
     this.controls.update();
-    this.render();
+    this.redraw();
   }
 
   zoom(factor) {
     const offset = this.eye.position.clone().sub(this.controls.target).multiplyScalar(factor);
     this.eye.position.copy(this.controls.target).add(offset);
     this.controls.update();
-    this.render();
+    this.redraw();
   }
 
   #target() {
@@ -213,7 +212,12 @@ export class Scene {
   show(t) {
     this.actors.forEach((actor) => this.#place(actor, t));
     this.#moveCamera();
-    this.render();
+    this.redraw();
+  }
+
+  /** Draw with the next frame of the screen, once for all changes until then. */
+  redraw() {
+    this.frame ||= requestAnimationFrame(() => this.render());
   }
 
   #place(actor, t) {
@@ -252,8 +256,10 @@ export class Scene {
       new THREE.Vector3(...now.position), new THREE.Vector3(now.position[0], now.position[1], this.floor)]);
   }
 
-  /** Enlarge vehicles that would be too small to see, and draw. */
+  /** Enlarge vehicles that would be too small to see, and draw now. */
   render() {
+    cancelAnimationFrame(this.frame);
+    this.frame = 0;
     const height = this.canvas.clientHeight || 1;
     this.eye.updateMatrixWorld();
     for (const { vehicle, ghost, now, wind } of this.actors) {
@@ -278,10 +284,15 @@ export class Scene {
     if (this.onrender) this.onrender();
   }
 
+  /** Fill the holder of the canvas; returns whether its size has changed. */
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    if (!width || !height) return;
-    this.setSize(width, height, Math.min(2, devicePixelRatio));
+    const ratio = Math.min(2, devicePixelRatio), { x, y } = this.renderer.getSize(new THREE.Vector2());
+    if (!width || !height) return false;
+    if (x === width && y === height && ratio === this.renderer.getPixelRatio()) return false;
+    this.setSize(width, height, ratio);
+    this.render();  // now, since the canvas is empty
+    return true;
   }
 
   setSize(width, height, ratio) {
