@@ -16,16 +16,21 @@ function(quadcore_list_objects variable target)
   set(${variable} ${objects} PARENT_SCOPE)
 endfunction()
 
-# quadcore_add_objects(NAME SOURCE...) creates an object library of one folder, which becomes part of
-# libquadcore. The folder is the include root of its headers. Link only the libraries below it in the
-# order of CONTRIBUTING.md, so that an include of a higher layer does not compile.
+# quadcore_add_objects(NAME [LESS_OPTIMISED] SOURCE...) creates an object library of one folder, which becomes
+# part of libquadcore. See quadcore_optimise_less() for the option. The folder is the include root of its
+# headers. Link only the libraries below it in the order of CONTRIBUTING.md, so that an include of a higher
+# layer does not compile.
 function(quadcore_add_objects name)
-  add_library(${name} OBJECT ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 given LESS_OPTIMISED "" "")
+  add_library(${name} OBJECT ${given_UNPARSED_ARGUMENTS})
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
   # Clang hides the definition of a function unless its own namespace block is marked like that of the
   # declaration. libquadcore exports the whole namespace.
   if(BUILD_SHARED_LIBS AND CMAKE_CXX_COMPILER_ID MATCHES Clang)
     set_target_properties(${name} PROPERTIES CXX_VISIBILITY_PRESET default)
+  endif()
+  if(given_LESS_OPTIMISED)
+    quadcore_optimise_less(${name})
   endif()
   quadcore_precompile(${name})
   quadcore_list_objects(objects ${name})

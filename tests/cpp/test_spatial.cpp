@@ -4,6 +4,7 @@
 
 #include "quadcore/plugin/random.hpp"
 #include "quadcore/plugin/spatial.hpp"
+#include "shortest_rotation.hpp"
 
 using namespace quadcore;
 
@@ -67,4 +68,27 @@ TEST_CASE("composed poses move points like the one after the other") {
     };
     CHECK((move(a * b, point) - move(a, move(b, point))).norm() < 1e-12);
   }
+}
+
+TEST_CASE("the shortest rotation takes one direction to the other about their normal") {
+  double count = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Vector3d from = random_vector(count), to = random_vector(count);
+    const Quaterniond q = shortest_rotation(from, to);
+    CHECK((q * from.normalized()).isApprox(to.normalized(), 1e-12));
+    CHECK(std::abs(q.vec().dot(from)) < 1e-12);
+    CHECK(q.w() > 0);
+  }
+}
+
+TEST_CASE("the shortest rotation between opposite directions is half a turn about a normal") {
+  for (const Vector3d& from : {Vector3d(0, 0, 2), Vector3d(0, -1, 0), Vector3d(3, 0, 0),
+                               Vector3d(1, 2, 3), Vector3d(-0.1, 4, 0.2)}) {
+    const Quaterniond q = shortest_rotation(from, -from);
+    CHECK((q * from).isApprox(-from, 1e-6));
+    CHECK(std::abs(q.vec().dot(from)) < 1e-12);
+    CHECK(q.norm() == doctest::Approx(1).epsilon(1e-12));
+  }
+  const Quaterniond q = shortest_rotation(Vector3d::UnitX(), Vector3d(-1, 1e-7, 0));
+  CHECK((q * Vector3d::UnitX()).isApprox(Vector3d(-1, 1e-7, 0), 1e-6));
 }

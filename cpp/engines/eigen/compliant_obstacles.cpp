@@ -11,6 +11,7 @@
 #include "lowest_point.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin/world.hpp"
+#include "shortest_rotation.hpp"
 #include "surface_points.hpp"
 
 namespace quadcore {
@@ -201,7 +202,7 @@ void CompliantObstacles::press(Shape& shape, const Kinematics& k, Loads& loads) 
   const double part = sum_W.norm() / patch.pressing;
   if (part > smallest_mean_normal) axis_W = sum_W / sum_W.norm();
   shape.next_axis_W = axis_W;
-  const Quaterniond q_NW = Quaterniond::FromTwoVectors(axis_W, Vector3d::UnitZ());
+  const Quaterniond q_NW = shortest_rotation(axis_W, Vector3d::UnitZ());
   for (const Point& point : points_) {
     patch.square += point.force * (q_NW * (point.p_W - center_W)).head<2>().squaredNorm();
   }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "shortest_rotation.hpp"
+
 namespace quadcore {
 namespace {
 
@@ -141,7 +143,7 @@ Convex sweep(const Convex& shape, const Vector3d& axis) {
     radius = aside.norm() + shape.size.x() + half * std::sqrt(std::max(0.0, 1 - cosine * cosine));
   }
   return make_convex(ShapeKind::cylinder, {radius, 2 * extent(shape, axis), 0}, along * axis,
-                     Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis));
+                     shortest_rotation(Vector3d::UnitZ(), axis));
 }
 
 }  // namespace
