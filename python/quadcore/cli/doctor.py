@@ -42,6 +42,8 @@ _OPTIONAL = {
     "SALib": ("sweep", "draws Sobol and Morris designs"),
     "distributed": ("dask", "runs sweeps on a Dask cluster"),
     "pandas": ("pandas", "makes data frames of logs"),
+    "numba": ("numba", "compiles controllers that the core calls without Python"),
+    "onnxruntime": ("onnx", "runs neural networks in .onnx files as controllers"),
     "argcomplete": ("completion", "completes commands in a shell"),
 }
 """Modules of the extras, with what they are for."""
