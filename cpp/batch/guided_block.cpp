@@ -160,8 +160,7 @@ void GuidedBlock::command(Control& control, double step, double period, double* 
         }
       });
   double* const memory = control.memory.data();
-  std::optional<control::FlatState> flat;
-  if (point.flat) flat = point.flat->state(point.column);
+  const std::optional<control::FlatState> flat = point.flat_state();
   follower.guide->controller->command(period, odometry, point.wanted, memory, speeds,
                                       flat ? &*flat : nullptr);
   follower.guided->saturated += control::Controller::saturated(memory);

@@ -65,7 +65,14 @@ Speeds are those of a command, rad/s, before the division by `slowdown`.)")
         VectorXd limits = VectorXd::Constant(static_cast<Eigen::Index>(self->command_width()),
                                              std::numeric_limits<double>::infinity());
         for (const RotorDescription& rotor : self->drives()) {
-          if (rotor.place != not_driven) limits[rotor.place] = rotor.fastest;
+          if (rotor.place == not_driven) continue;
+          if (rotor.place < 0 || rotor.place >= limits.size()) {
+            throw InputError("a motor plugin sets place " + std::to_string(rotor.place) +
+                             " in describe_rotors(), but a command has " +
+                             std::to_string(limits.size()) +
+                             " rotor speeds. Begin with 0, and give each rotor its own place.");
+          }
+          limits[rotor.place] = rotor.fastest;
         }
         return limits;
       },

@@ -20,7 +20,7 @@ QUADCORE_LAW laws::Vec3<T> air_force_W(const AirNumbers<N>& air, const laws::Mat
                                        const laws::Vec3<T>& v_F) {
   const laws::Vec3<T> v_W = R_WF * v_F;
   const N *l = air.linear, *c = air.components;
-  const auto row = [&](std::size_t i) {
+  const auto row = [&](std::size_t i) QUADCORE_INLINED {
     return l[i] * v_F.x + (l[i + 3] * v_F.y + l[i + 6] * v_F.z);
   };
   const laws::Vec3<T> f_F{row(0) + c[0] * laws::absolute(v_W.x) * v_W.x,

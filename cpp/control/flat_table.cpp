@@ -36,7 +36,8 @@ void FlatTable::set(std::size_t column, const Reference& wanted) {
   put(FlatRow::acceleration, wanted.acceleration);
   put(FlatRow::jerk, wanted.jerk);
   put(FlatRow::snap, wanted.snap);
-  if (wanted.yaw != turned_.yaw) turned_ = {wanted.yaw, elementary::sincos(wanted.yaw)};
+  if (wanted.yaw != turned_.yaw || std::signbit(wanted.yaw) != std::signbit(turned_.yaw))
+    turned_ = {wanted.yaw, elementary::sincos(wanted.yaw)};
   *at(FlatRow::sine, column) = turned_.turn.sin;
   *at(FlatRow::cosine, column) = turned_.turn.cos;
   *at(FlatRow::yaw_rate, column) = wanted.yaw_rate;

@@ -51,8 +51,7 @@ void GuidedController::command(double period, std::size_t odometry, const Refere
   if (is_defined && is_whole && single_lane_.prepare(period, controller_, state)) {
     return single_lane_.command(controller_, now, point, state, speeds);
   }
-  std::optional<FlatState> flat;
-  if (point.flat) flat = point.flat->state(point.column);
+  const std::optional<FlatState> flat = point.flat_state();
   controller_.command(period, messages::read<Odometry>(now), point.wanted, state, speeds,
                       flat ? &*flat : nullptr);
 }

@@ -11,6 +11,11 @@ ReferencePreview::ReferencePreview(const Controller& controller) {
   table_ = std::make_unique<FlatTable>(controller.model(), feeds == Feeds::flat_state_with_drag);
 }
 
+std::optional<FlatState> ReferencePreview::Point::flat_state() const {
+  if (!flat) return std::nullopt;
+  return flat->state(column);
+}
+
 ReferencePreview::ReferencePreview(ReferencePreview&&) noexcept = default;
 ReferencePreview::~ReferencePreview() = default;
 

@@ -10,6 +10,8 @@ namespace quadcore::control {
 
 static_assert(size_of<MeasuredNumbers> == 13, "These are the first values of odometry.");
 
+SingleLane::SingleLane() : width_(lane_width(widest_lanes)) {}
+
 bool SingleLane::prepare(double period, const Controller& controller, double* state) {
   if (period != period_) lanes_ = controller.in_lanes(period);
   period_ = period;
@@ -22,16 +24,15 @@ void SingleLane::command(const Controller& controller, const double* now,
                          double* speeds) const {
   static constexpr laws::ForEachWidth<void(const CommandBlock&)> calls{
       &command_single<1>, &command_single<2>, &command_single<4>, &command_single<8>};
-  static const auto call = calls[lane_width(widest_lanes)];
   const WantedNumbers<double> reference = numbers_of(wanted);
   DemandNumbers<double> demand;
   std::int64_t is_complete;
   const auto numbers = [](auto& of) { return reinterpret_cast<double*>(&of); };
-  call({lanes_->wrench_controller.kind, lanes_->wrench_controller.switches, 1, lanes_->rotors,
-        lanes_->wrench_controller.numbers.size(), lanes_->state.size(), period_,
-        !Controller::has_begun(state), lanes_->wrench_controller.numbers.data(),
-        lanes_->actuators.data(), now, reinterpret_cast<const double*>(&reference), state,
-        numbers(demand), speeds, &is_complete});
+  calls[width_]({lanes_->wrench_controller.kind, lanes_->wrench_controller.switches, 1,
+                 lanes_->rotors, lanes_->wrench_controller.numbers.size(), lanes_->state.size(),
+                 period_, !Controller::has_begun(state), lanes_->wrench_controller.numbers.data(),
+                 lanes_->actuators.data(), now, reinterpret_cast<const double*>(&reference), state,
+                 numbers(demand), speeds, &is_complete});
   if (is_complete == 0) controller.act(period_, demand_of(demand), state, speeds);
 }
 

@@ -1,4 +1,4 @@
-"""Train a network that imitates the built-in controller `geometric`: some seconds on one core.
+"""Train a network that imitates the built-in controller `geometric`: a few seconds on one core.
 
     python train_policy.py [--out policy.onnx]
 

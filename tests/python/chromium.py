@@ -60,7 +60,11 @@ class Browser:
         """End the process, which does so when its pipe ends."""
         self.requests.close()
         self.messages.close()
-        self.process.wait()
+        try:
+            self.process.wait(10)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
         self.folder.cleanup()
 
     def open(self, url, dark=False, scale=1.0):
@@ -77,11 +81,15 @@ class Browser:
         """
         size = {"width": 1000, "height": 900, "deviceScaleFactor": scale, "mobile": False}
         theme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        self.call("Emulation.setDeviceMetricsOverride", **size)
-        self.call("Emulation.setEmulatedMedia", features=[theme])
-        self.send("Page.navigate", url=url)
-        answer = self.receive(lambda message: message.get("method") == "Runtime.bindingCalled")
-        self.call("Page.navigate", url="about:blank")  # else an animation would go on
+        try:
+            self.call("Emulation.setDeviceMetricsOverride", **size)
+            self.call("Emulation.setEmulatedMedia", features=[theme])
+            self.send("Page.navigate", url=url)
+            answer = self.receive(lambda message: message.get("method") == "Runtime.bindingCalled")
+            self.call("Page.navigate", url="about:blank")  # else an animation would go on
+        except BaseException:  # what the page still says is no matter of the next test
+            start_browser.cache_clear()
+            raise
         return answer["params"]["payload"]
 
     def call(self, method, **parameters):

@@ -12,8 +12,8 @@ sees, tell what else becomes of it:
     <!-- output: 0.02 -->  the same, with numbers within 2 %; more of them continue the first
 
 Sweeps fly little, other flights are cut short except in tutorials, in READMEs and where the output
-is shown. An output that lists no plots is one of a command that draws none. Programs of systems
-that are not here are stood in for (`stand_in.py`).
+is shown. If the output that a page shows lists no plots, the command runs with `--no-plots`, except
+in tutorials and READMEs. Programs of systems that are not here are stood in for (`stand_in.py`).
 """
 
 from __future__ import annotations
@@ -118,7 +118,8 @@ def run(page, folder):
             shell = text or block["before"]
             whole = ""
             if after["marker"] == "output":
-                short = "no" if PLOTS.search(after["text"]) else "plots"
+                draws = page.parent in WHOLE or PLOTS.search(after["text"])
+                short = "no" if draws else "no-plots"
                 whole = f", QUADCORE_SHORT={short!r}"
             steps.append(f"_shell('bash', '-eo', 'pipefail', '-c', {shell!r}{whole})")
         elif language in ("octave", "matlab"):

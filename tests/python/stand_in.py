@@ -11,7 +11,7 @@ from pathlib import Path
 
 FEW = {"--samples": "2"}
 SHORT = {"--duration": "1", "--seeds": "1", "--budget": "2", "--no-plots": None, **FEW}
-CHANGES = {"no": {}, "plots": {"--no-plots": None}, "": FEW, "yes": SHORT}
+CHANGES = {"no": {}, "no-plots": {"--no-plots": None}, "": FEW, "yes": SHORT}
 """Options to add, by QUADCORE_SHORT."""
 
 

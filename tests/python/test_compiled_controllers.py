@@ -128,9 +128,62 @@ def test_its_numbers_are_parameters(tmp_path, monkeypatch):
     assert 0 < errors[1] < errors[0] - 1e-4
 
 
-def test_the_core_does_not_call_what_a_wrapper_changes():
+class Halved(Compiled):
+    """A controller whose own call changes what the function commands."""
+
+    def __call__(self, t, state, reference):
+        return 0.5 * super().__call__(t, state, reference)
+
+
+class Wrapping:
+    """The same by an object that holds the controller."""
+
+    def __init__(self, controller):
+        self._controller = controller
+
+    def __getattr__(self, name):
+        return getattr(self._controller, name)
+
+    def __call__(self, t, state, reference):
+        return 0.5 * np.asarray(self._controller(t, state, reference))
+
+
+@pytest.mark.parametrize("reference", [CIRCLE, lambda t: CIRCLE(t)])
+def test_python_calls_what_changes_its_command(reference):
+    halved = Halved(qc.CompiledController.prototype(command))
+    expected = fly(Wrapping(Interpreted()), reference).table
+    assert fly(halved, reference).table.tobytes() == expected.tobytes()
+    assert fly(Wrapping(by_ctypes()), reference).table.tobytes() == expected.tobytes()
+    assert fly(by_ctypes(), reference).table.tobytes() != expected.tobytes()
+
+
+def test_the_core_does_not_call_what_an_injection_changes():
     wrapped = _Injection(by_ctypes(), 0)
     assert fly(wrapped).table.tobytes() != fly(by_ctypes()).table.tobytes()
+
+
+def test_each_run_has_the_delay_and_begins_with_new_data():
+    compiled, interpreted = by_ctypes(), Interpreted()
+    compiled.delay = interpreted.delay = 0.004
+    expected = fly(interpreted).table.tobytes()
+    assert [fly(compiled).table.tobytes() for _ in range(2)] == [expected] * 2
+
+
+def test_a_call_before_a_run_is_refused():
+    with pytest.raises(qc.InputError, match=r"no run has begun\. Call reset\(simulation\) first"):
+        by_ctypes()(0.0, None, CIRCLE(0.0))
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        qc.CompiledController.prototype(),
+        ctypes.PYFUNCTYPE(None, *qc.CompiledController.prototype._argtypes_)(command),
+    ],
+)
+def test_a_function_that_the_core_cannot_call_is_refused(function):
+    with pytest.raises(qc.InputError, match="is not compiled, or has no address"):
+        qc.CompiledController(function)
 
 
 def test_its_saturated_calls_count():

@@ -58,6 +58,16 @@ for engine in sys.argv[4:]:
 """
 
 
+CONTROL = """
+import hashlib
+import quadcore as qc
+for controller in ("geometric", "lqr", "indi"):
+    simulation = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
+    log = simulation.run(2.0, controller=controller, reference="spiral")
+    print(controller, hashlib.sha256(log.table.tobytes()).hexdigest())
+"""
+
+
 @lru_cache(maxsize=None)
 def fly(model, world="empty", **environment):
     """Hash of every bit of state and odometry on the way, for each engine and drag model."""
@@ -88,6 +98,21 @@ def test_flights_and_noise_are_the_same_with_and_without_fused_multiply_adds(odd
 def test_rotors_in_lanes_of_every_width_fly_the_same_bytes(name, lanes, odd):
     model = odd if name == "odd" else name
     assert fly(model, QUADCORE_LANES=lanes) == fly(model)
+
+
+def test_controllers_of_single_flights_give_the_same_bytes_in_lanes_of_every_width():
+    flown = {
+        subprocess.run(
+            [sys.executable, "-c", CONTROL],
+            env={**os.environ, "QUADCORE_LANES": lanes},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for lanes in ("1", "2", "4", "8")
+    }
+    assert len(flown) == 1
+    assert flown.pop().count("\n") == 3
 
 
 def test_what_touches_the_ground_flies_the_same_bytes_too():

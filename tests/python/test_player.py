@@ -312,6 +312,35 @@ def test_keys_boxes_cameras_and_plots_change_what_is_drawn(tmp_path):
     assert found and all(found.values()), found
 
 
+def test_each_change_is_drawn_once_with_the_next_frame(tmp_path):
+    script = (
+        HELP
+        + """
+    const settle = () => new Promise(
+      (done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    const drawn = () => scene.renderer.info.render.frame;
+    const count = async (change) => {
+      await settle();
+      const before = drawn();
+      change();
+      await settle();
+      return drawn() - before === 1;
+    };
+    result.time = await count(() => player.go(1));
+    result.camera = await count(() => scene.setCamera("top"));
+    result.zoom = await count(() => scene.zoom(0.9));
+    result.box = await count(() => document.querySelector(".show-trails").click());
+    result.two = await count(() => { player.go(2); scene.zoom(1.1); });
+    await settle();
+    const before = drawn();
+    await settle();
+    result.rests = drawn() === before;
+    """
+    )
+    found = run_script_when_ready(make_page([PlayerFlight("a", flown())]), script, tmp_path)
+    assert len(found) == 6 and all(found.values()), found
+
+
 def test_it_plays_loops_and_follows_the_speed(tmp_path):
     script = (
         HELP

@@ -5,9 +5,12 @@ Each suite runs in a process of its own, with parameters of its own, and prints 
 PREFIXSUITE.log. What all suites import is imported once.
 """
 
+import contextlib
 import os
 import runpy
+import signal
 import sys
+import xmlrpc.client
 from pathlib import Path
 
 import harness  # noqa: F401, which imports what all suites need
@@ -20,11 +23,24 @@ def list_parameters() -> set:
     return set(rosgraph.Master("/suites").getParam("/"))
 
 
+def end_nodes() -> None:
+    """Kill the nodes that a suite has left, which would disturb the next."""
+    master = rosgraph.Master("/suites")
+    names = {name for part in master.getSystemState() for _, nodes in part for name in nodes}
+    for name in names - {"/rosout"}:
+        with contextlib.suppress(OSError, rosgraph.MasterException):
+            uri = master.lookupNode(name)
+            pid = xmlrpc.client.ServerProxy(uri).getPid("/suites")[2]
+            print(f"{name} is left, and killed.")
+            os.kill(pid, signal.SIGKILL)
+
+
 def run_suite(name: str, prefix: str) -> None:
     """Run a suite in a process of its own, to its end."""
     child = os.fork()
     if child:
         os.waitpid(child, 0)
+        end_nodes()
         return
     with open(f"{prefix}{name}.log", "w") as log:
         for stream in (sys.stdout, sys.stderr):

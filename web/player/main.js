@@ -33,6 +33,7 @@ class Player {
     this.go(wanted ? Number(wanted[1]) : this.begin);
     this.scene.setCamera(content.camera);
     this.scene.resize();
+    this.plots.resize();  // their own height may have made the page scroll
     if (this.isLive) this.follow(content);
   }
 
@@ -74,6 +75,7 @@ class Player {
     this.last = now;
     if (this.time + passed >= this.end && this.part(".loop").checked && !this.isLive) this.go(this.begin);
     else this.go(this.time + passed);
+    this.scene.render();  // in this frame of the screen, not the next
     if (this.time < this.end || this.isLive) requestAnimationFrame((next) => this.frame(next));
     else this.play(false);
   }

@@ -35,7 +35,8 @@ class WindPlugin final : public Plugin {
             messages::kind_of<messages::Vector>("mean velocity of the air, world axes, m/s"))) {
     if (!shear_.acts() || !velocity_W_.isZero(0)) return;
     setup.warnings.push_back(
-        "<shear> has no effect while <velocity> is 0; write the wind at <referenceHeight>");
+        "<shear> has no effect while <velocity> is 0, unless a message on <velocityTopic> sets the "
+        "wind; write the wind at <referenceHeight>");
   }
 
   std::size_t state_size() const override { return kFilters + turbulence_numbers; }

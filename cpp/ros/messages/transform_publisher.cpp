@@ -14,19 +14,26 @@ namespace quadcore::node {
 /// sent before the next call.
 class TransformPublisher::Shared {
  public:
-  explicit Shared(ros::NodeHandle& nh) {
-    ros::AdvertiseOptions options;
-    options.init<tf2_msgs::TFMessage>(
-        "/tf", 100, [this](const ros::SingleSubscriberPublisher& newcomer) { greet(newcomer); });
-    options.callback_queue = &queue_;
-    publisher_ = nh.advertise(options);
-    listener_ = ros::PollManager::instance()->addPollThreadListener([this] { note_sent(); });
-  }
+  Shared()
+      : listener_(ros::PollManager::instance()->addPollThreadListener([this] { note_sent(); })) {}
   Shared(const Shared&) = delete;
   Shared& operator=(const Shared&) = delete;
   ~Shared() {
     publisher_.shutdown();
     ros::PollManager::instance()->removePollThreadListener(listener_);
+  }
+
+  /// \param self  this object; roscpp may greet a subscriber while it is destroyed
+  void advertise(ros::NodeHandle& nh, const std::shared_ptr<Shared>& self) {
+    static CallerQueue queue;  // has no state
+    ros::AdvertiseOptions options;
+    options.init<tf2_msgs::TFMessage>(
+        "/tf", 100,
+        [weak = std::weak_ptr<Shared>(self)](const ros::SingleSubscriberPublisher& newcomer) {
+          if (const std::shared_ptr<Shared> shared = weak.lock()) shared->greet(newcomer);
+        });
+    options.callback_queue = &queue;
+    publisher_ = nh.advertise(options);
   }
 
   void publish(tf2_msgs::TFMessage& transforms, const ros::Time& time) {
@@ -65,20 +72,20 @@ class TransformPublisher::Shared {
   }
 
   mutable std::mutex mutex_;
-  CallerQueue queue_;
   ros::Publisher publisher_;
-  boost::signals2::connection listener_;
   tf2_msgs::TFMessage last_;
   ros::Time time_, stamp_;
   bool has_unserved_ = false;
   // Numbers of messages.
   std::uint64_t published_ = 0;
-  std::uint64_t before_ = 0;  ///< published before the last call of the listener
-  std::uint64_t sent_ = 0;    ///< certainly sent
+  std::uint64_t before_ = 0;              ///< published before the last call of the listener
+  std::uint64_t sent_ = 0;                ///< certainly sent
+  boost::signals2::connection listener_;  ///< last, since it is called from now on
 };
 
-TransformPublisher::TransformPublisher(ros::NodeHandle& nh)
-    : shared_(std::make_shared<Shared>(nh)) {}
+TransformPublisher::TransformPublisher(ros::NodeHandle& nh) : shared_(std::make_shared<Shared>()) {
+  shared_->advertise(nh, shared_);
+}
 
 void TransformPublisher::publish(tf2_msgs::TFMessage& transforms, const ros::Time& time) {
   shared_->publish(transforms, time);

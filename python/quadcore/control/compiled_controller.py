@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from _ctypes import CFuncPtr
-from typing import Any, ClassVar, Sequence
+from typing import Any, ClassVar, Optional, Sequence
 
 import numpy as np
 
@@ -13,9 +12,10 @@ from ..support.arguments import shorten
 from .rate_and_delay import DELAY, RATE
 from .reference_ahead import list_fields
 from .vectorized import VectorState
-from .vehicle import unwrap
 
 _NUMBERS = ctypes.POINTER(ctypes.c_double)
+_FUNCTION = ctypes.CFUNCTYPE(None).__mro__[1]
+_TAKES_INTERPRETER = 4  # flag of a function that runs with the lock of the interpreter
 
 
 class CompiledController:
@@ -30,7 +30,10 @@ class CompiledController:
     - `reference`: 18 numbers of the members of `Reference`: position, velocity, acceleration, jerk,
       snap, m, s, world axes; yaw, yaw rate, yaw acceleration, rad, s.
     - `data`: numbers of the controller, which it may change.
-    - `speeds`: the function writes the signed rotor speeds, rad/s.
+    - `speeds`: the function writes the signed rotor speeds, rad/s, one for each rotor.
+
+    The core does not call the function for a subclass with a `__call__` of its own, nor for an
+    object that holds the controller. Python calls these.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ class CompiledController:
     Raises
     ------
     InputError
-        If the function has other arguments.
+        If it is not a compiled function, or one with other arguments.
     """
 
     signature: ClassVar[str] = f"void(float64{4 * ', CPointer(float64)'})"
@@ -62,7 +65,7 @@ class CompiledController:
         self._made_of = function  # numba frees the code of a function without references
         self._function = _find_function(function)
         self._data = np.empty(0)
-        self._width = 0
+        self._width: Optional[int] = None  # until the first run
 
     def make_data(self, simulation: Any) -> Any:
         """Return the numbers `data` at the start of a run, such as gains and the state of a filter.
@@ -90,23 +93,24 @@ class CompiledController:
         given = self.make_data(simulation)
         try:
             self._data = np.array(given, dtype=float)
+            is_list = self._data.ndim == 1
         except (TypeError, ValueError):
-            self._data = np.empty((0, 0))
-        if self._data.ndim != 1:
+            is_list = False
+        if not is_list:
             raise InputError(
                 f"controller: its make_data returned {shorten(given)}. Return a list of numbers."
             )
-        self._width = unwrap(simulation).command_width
+        self._width = simulation.command_width
 
     @property
-    def compiled(self) -> CompiledController:
-        """The controller itself; wrappers that pass it on let the core call the function."""
-        return self
+    def compiled(self) -> Optional[CompiledController]:
+        """The controller itself, unless a subclass calls the function in a way of its own."""
+        return self if type(self).__call__ is CompiledController.__call__ else None
 
     @property
     def address(self) -> int:
         """Address of the function."""
-        return ctypes.cast(self._function, ctypes.c_void_p).value or 0
+        return _find_address(self._function)
 
     @property
     def data(self) -> np.ndarray:
@@ -115,6 +119,8 @@ class CompiledController:
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
         """Return the signed rotor speeds, rad/s; see `Controller`."""
+        if self._width is None:
+            raise InputError("controller: no run has begun. Call reset(simulation) first.")
         if reference is None:
             raise InputError("controller: a compiled function needs a reference. Give one.")
         measured = np.concatenate([getattr(state, name) for name in VectorState._fields])
@@ -124,9 +130,26 @@ class CompiledController:
         return speeds
 
 
+def find_compiled(controller: Any) -> Optional[CompiledController]:
+    """Return the compiled controller that the core may call in the place of a controller.
+
+    The class of the controller has the property `compiled`. The attributes of an object that it
+    holds do not count, because it may change the command.
+    """
+    if not isinstance(getattr(type(controller), "compiled", None), property):
+        return None
+    found = controller.compiled
+    return found if isinstance(found, CompiledController) else None
+
+
 def is_compiled(given: Any) -> bool:
     """Whether an object is a compiled function."""
-    return isinstance(getattr(given, "ctypes", given), CFuncPtr)
+    return isinstance(getattr(given, "ctypes", given), _FUNCTION)
+
+
+def _find_address(function: Any) -> int:
+    """Return the address of a function of ctypes; 0: none."""
+    return ctypes.cast(function, ctypes.c_void_p).value or 0
 
 
 def _find_function(given: Any) -> Any:
@@ -138,6 +161,11 @@ def _find_function(given: Any) -> Any:
         )
     function = getattr(given, "ctypes", given)
     wanted = CompiledController.prototype
+    if not _find_address(function) or function._flags_ & _TAKES_INTERPRETER:
+        raise InputError(
+            "controller: the function is not compiled, or has no address. Make it with "
+            "numba.cfunc(quadcore.CompiledController.signature) or CompiledController.prototype."
+        )
     arguments: Sequence[Any] = function.argtypes or ()
     if (function.restype, tuple(arguments)) != (wanted._restype_, wanted._argtypes_):
         raise InputError(

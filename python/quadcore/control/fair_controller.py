@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Optional
 
 from .. import _core
 from .built_in import BuiltInController
+from .compiled_controller import CompiledController, find_compiled
 from .controller import check_callable
 from .plugin_controller import PluginController
 from .vehicle import Vehicle
@@ -30,6 +31,11 @@ class FairController:
     def __init__(self, controller: Any) -> None:
         check_callable(controller)
         self.__dict__.update(_controller=controller)
+
+    @property
+    def compiled(self) -> Optional[CompiledController]:
+        """The compiled controller that the core may call in its place."""
+        return find_compiled(self._controller)
 
     def __getattr__(self, name: str) -> Any:
         if name == "_controller":  # copy and pickle ask before it is set

@@ -11,7 +11,7 @@ from .. import _core
 from .._core import FlightError, InputError, QuadcoreError
 from ..control import controllers, references
 from ..control.built_in import BuiltInController
-from ..control.compiled_controller import CompiledController
+from ..control.compiled_controller import CompiledController, find_compiled
 from ..control.controller import SENSED, ControllerLike, check_callable
 from ..control.estimate_errors import EstimateErrors
 from ..control.fair_controller import find_sensors
@@ -174,10 +174,9 @@ class ControllerPilot(ReferencePilot):
 
     def _find_compiled(self) -> Optional[CompiledController]:
         """Return the compiled controller, unless Python notes something after each call."""
-        compiled = getattr(self._controller, "compiled", None)
         if self._own_columns.columns or self._estimate_errors is not None:
             return None
-        return compiled if isinstance(compiled, CompiledController) else None
+        return find_compiled(self._controller)
 
     def _count_reported(self, call: Command) -> Command:
         """Count what a built-in controller reports, which its speeds alone do not show."""

@@ -119,7 +119,7 @@ class Simulation(_core.Simulation):
         # attrgetter, not a function: reading the state is part of every step of a Python loop.
         state = property(
             attrgetter("_live"),
-            doc="Current state, as read-only views that change with each step.",
+            doc="Current state, as read-only views that change as the simulation steps.",
         )
 
     @property

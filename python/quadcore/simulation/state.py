@@ -66,10 +66,11 @@ class State:
 
 
 class LiveState:
-    """Current state of a simulation: read-only views that change with each step.
+    """Current state of a simulation: read-only views that change as it steps.
 
     The attributes are those of `State`. `copy()`, `copy.copy` and `pickle` make an independent
-    `State` of a single moment. A view may mix two moments if it is read while another thread
+    `State` of a single moment. Within `run`, they change when a controller in Python is called or a
+    row is logged, and at the end. A view may mix two moments if it is read while another thread
     steps; `copy()` raises an error in this case.
     """
 

@@ -113,14 +113,15 @@ class Simulation : private ForceField {
   std::size_t rotor_count() const { return model_.joints.size(); }
   /// Return the names of the rotor joints, in the order of all rotor quantities.
   std::vector<std::string> rotor_names() const { return model_.joint_names(); }
-  /// Return the description of each joint by the plugin that drives it. It lacks what
-  /// describe_vehicle() measures.
+  /// Return the description of each joint by the plugins. It lacks what describe_vehicle() measures
+  /// and what plugins compute from that, such as the lag.
   const std::vector<RotorDescription>& drives() const { return drives_; }
   /// Return the world.
   const World& world() const { return world_; }
   /// Return the fingerprint of everything that a flight depends on in addition to its state.
   const Fingerprint& fingerprint() const { return *fingerprint_; }
-  /// Return the present state, which is computed on request. Call this again after a step.
+  /// Return the present state, which is computed on request. Call this again after a step, and not
+  /// from two threads at once.
   const VehicleState& state() const {
     if (is_outdated_) show_state();
     return state_;

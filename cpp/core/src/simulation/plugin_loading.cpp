@@ -218,11 +218,12 @@ void Simulation::check_drivers() {
   const std::size_t joints = model_.joints.size();
   std::vector<const LoadedPlugin*> drivers(joints, nullptr);
   radii_.assign(joints, std::numeric_limits<double>::quiet_NaN());
-  drives_.resize(joints);
+  drives_.assign(joints, {});
   for (const LoadedPlugin& p : plugins_) {
     std::vector<RotorDescription> rotors(joints);
     active_ = &p;
     p.plugin->describe_rotors(rotors);
+    p.plugin->describe_rotors(drives_);
     active_ = nullptr;
     for (std::size_t i = 0; i < joints; ++i) {
       const RotorDescription& rotor = rotors[i];
@@ -234,7 +235,6 @@ void Simulation::check_drivers() {
                          ") already drives. Keep one of them.");
       }
       drivers[i] = &p;
-      drives_[i] = rotor;
     }
   }
 }

@@ -182,7 +182,6 @@ class _Injection:
         self._phases = -np.pi * order * (order - 1) / len(lines)
 
     vectorized = False
-    compiled = None  # the core would call the function itself
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._controller, name)

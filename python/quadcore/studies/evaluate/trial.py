@@ -7,6 +7,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..._core import InputError, ParameterInfo, parse_number
 from ...control.built_in import BuiltInController
+from ...control.compiled_controller import CompiledController, find_compiled
 from ...control.controller import SENSED, check_callable, set_parameter
 from ...control.fair_controller import FairController
 from ...control.inner_loop import InnerLoop
@@ -130,6 +131,11 @@ class _NominalModelController:
         elif isinstance(own, InnerLoop) and own.belief is None:
             parameters: Dict[str, Any] = own.parameters
             self.inner_loop = InnerLoop(own.spins, vehicle, **parameters)
+
+    @property
+    def compiled(self) -> Optional[CompiledController]:
+        """The compiled controller that the core may call in its place."""
+        return find_compiled(self._controller)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._controller, name)

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "quadcore/control/controller.hpp"
@@ -25,6 +26,9 @@ class ReferencePreview {
     /// controller uses none or it is undefined.
     const FlatTable* flat;
     std::size_t column;  ///< of the table
+
+    /// Return the flat state; nothing if `flat` is null.
+    std::optional<FlatState> flat_state() const;
   };
   /// Writes the times of the present call and of the next ones if the flight goes on [s].
   using ListTimes = std::function<void(double* times, std::size_t count)>;

@@ -11,6 +11,7 @@ namespace control {
 /// same as Controller::command(), but in one piece and without conversions.
 class SingleLane {
  public:
+  SingleLane();
   /// Return whether the controller has such a form, which is then prepared.
   /// \param period  time since the last call and until the next [s]
   bool prepare(double period, const Controller& controller, double* state);
@@ -22,6 +23,7 @@ class SingleLane {
                const ReferencePreview::Point& wanted, double* state, double* speeds) const;
 
  private:
+  int width_;  ///< lanes of the instructions that compute the one vehicle
   double period_ = 0;
   std::shared_ptr<const LaneController> lanes_;  ///< null if there is none for the period
 };
