@@ -45,6 +45,8 @@ def main():
     if len(arguments) != 1:
         sys.exit(__doc__)
     rospy.init_node("bag_player", disable_rostime=True)  # the clock stops during a pause
+    if rospy.is_shutdown():  # while it waited for the master
+        return
     topic = rospy.get_param("~topic", "")
     try:
         topic, commands = read_commands(arguments[0], topic)

@@ -56,5 +56,6 @@ def call(service):
 
 if __name__ == "__main__":
     rospy.init_node("flight_buttons", disable_rostime=True)
-    Buttons()
-    rospy.spin()
+    if not rospy.is_shutdown():  # as after Ctrl-C without a master
+        Buttons()
+        rospy.spin()

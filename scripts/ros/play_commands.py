@@ -68,6 +68,8 @@ def main():
     if len(arguments) != 1:
         sys.exit(__doc__)
     rospy.init_node("play_commands", disable_rostime=True)  # the clock stops during a pause
+    if rospy.is_shutdown():  # while it waited for the master
+        return
     out = rospy.get_param("~out", "")
     log = None
     try:
