@@ -27,6 +27,7 @@ FOLDER = Path(rospkg.RosPack().get_path("quadcore"))
 PAGES = [FOLDER / "README.md", *sorted((FOLDER / "docs").glob("*.md"))]
 NOT_EVERYWHERE = {"rviz", "joy", "teleop_twist_joy"}
 SHELL = re.compile(r"^```sh\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+FILE = re.compile(r"^<!-- file: (\S+) -->\n+```\w*\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 COMMAND = re.compile(r"^(?:`|\s*)((?:roslaunch|rosrun) quadcore [^`#\n]*)")
 
 
@@ -58,6 +59,12 @@ class TestPages(unittest.TestCase):
         """The arguments, too: roslaunch passes over those that a file does not declare."""
         found = commands("roslaunch")
         self.assertGreater(len(found), 8)
+        folder = harness.folder_of(self)
+        for name, text in (file for page in PAGES for file in FILE.findall(page.read_text())):
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_text(text)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(str(folder))  # models are relative to it
         for (name, *arguments), page in found.items():
             with self.subTest(page=page, launch=name, arguments=arguments):
                 [file] = roslib.packages.find_resource("quadcore", name)
