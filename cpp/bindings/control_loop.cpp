@@ -62,9 +62,7 @@ class BoundLoop {
       clocked([&] { controller.command(period, topic, reference, list_times, speeds); });
       saturated_ += controller.saturated();
     };
-    if (bound_.guarded->in_fleet) return loop_.prepare(n, call);
-    raising_warnings(*bound_.guarded, [&] { without_gil([&] { loop_.advance(n, call); }); });
-    return n;
+    return fly(n, call, [](const auto& advance) { without_gil(advance); });
   }
 
   /// Advances under a function of Python's, which may read the simulation.
@@ -114,9 +112,7 @@ class BoundLoop {
       }
       count_saturated(speeds, most);
     };
-    if (bound_.guarded->in_fleet) return loop_.prepare(n, call);
-    raising_warnings(*bound_.guarded, [&] { without_gil([&] { loop_.advance(n, call); }); });
-    return n;
+    return fly(n, call, [](const auto& advance) { without_gil(advance); });
   }
 
   std::int64_t calls() const { return calls_; }
@@ -139,8 +135,16 @@ class BoundLoop {
       take(answer, speeds);
       count_saturated(speeds, most);
     };
+    return fly(n, call, [](const auto& advance) { advance(); });
+  }
+
+  /// Advances n steps, or prepares a step of a fleet.
+  /// \param call    commands the speeds
+  /// \param enclose  runs what advances, with the interpreter or without
+  template <class Call, class Enclose>
+  std::int64_t fly(std::int64_t n, const Call& call, const Enclose& enclose) {
     if (bound_.guarded->in_fleet) return loop_.prepare(n, call);
-    raising_warnings(*bound_.guarded, [&] { loop_.advance(n, call); });
+    raising_warnings(*bound_.guarded, [&] { enclose([&] { loop_.advance(n, call); }); });
     return n;
   }
 

@@ -32,7 +32,7 @@ def imitate(seed: int = 1) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarr
     teacher = qc.controllers.geometric(integral=False, lead=False)
     observations = generator.normal(size=(SAMPLES, len(SPREAD))) * SPREAD
     teacher.reset(simulation)
-    speeds = np.array([command(teacher, observation) for observation in observations])
+    speeds = np.array([ask_teacher(teacher, observation) for observation in observations])
     weights = generator.normal(size=(len(SPREAD), HIDDEN)) / (10 * SPREAD[:, None])
     biases = generator.uniform(-1, 1, HIDDEN)
     hidden = np.column_stack([np.tanh(observations @ weights + biases), np.ones(SAMPLES)])
@@ -40,7 +40,7 @@ def imitate(seed: int = 1) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarr
     return weights, biases, fitted[:-1], fitted[-1]
 
 
-def command(teacher: qc.controllers.BuiltInController, observation: np.ndarray) -> np.ndarray:
+def ask_teacher(teacher: qc.controllers.BuiltInController, observation: np.ndarray) -> np.ndarray:
     """Return the rotor speeds of the controller for an observation, rad/s."""
     position, velocity, half_turn, rates = observation.reshape(4, 3)
     state = SimpleNamespace(

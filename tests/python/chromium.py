@@ -88,6 +88,7 @@ class Browser:
             answer = self.receive(lambda message: message.get("method") == "Runtime.bindingCalled")
             self.call("Page.navigate", url="about:blank")  # else an animation would go on
         except BaseException:  # what the page still says is no matter of the next test
+            self.process.kill()
             start_browser.cache_clear()
             raise
         return answer["params"]["payload"]
