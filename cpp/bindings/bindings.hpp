@@ -9,7 +9,9 @@ namespace quadcore::bindings {
 namespace py = pybind11;
 
 void bind_errors(py::module_& m);
+void bind_document(py::module_& m);
 void bind_model(py::module_& m);
+void bind_world(py::module_& m);
 void bind_clearance(py::module_& m);
 void bind_plugins(py::module_& m);
 void bind_snapshot(py::module_& m);

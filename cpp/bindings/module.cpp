@@ -3,7 +3,9 @@
 PYBIND11_MODULE(_core, m) {
   m.doc() = "C++ core of quadcore; use the package quadcore instead.";
   quadcore::bindings::bind_errors(m);
+  quadcore::bindings::bind_document(m);
   quadcore::bindings::bind_model(m);
+  quadcore::bindings::bind_world(m);
   quadcore::bindings::bind_clearance(m);
   quadcore::bindings::bind_plugins(m);
   quadcore::bindings::bind_snapshot(m);
