@@ -7,7 +7,7 @@ from typing import Any
 
 from .._core import InputError
 from ..model import resources
-from ..studies.options import VEHICLE
+from ..studies.option_info import VEHICLE
 from . import options, run, terminal
 from .parser import Parser, add_command, complete_from, find_group
 

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..studies.benchmark.definition import LATEST, VERSIONS, Definition
-from ..studies.options import OUTPUT, STUDY, EvaluateOptions
+from ..studies.option_info import OUTPUT, STUDY
+from ..studies.options import EvaluateOptions
 from ..studies.output_folder import output_folder
 from ..support import parse
 from . import options, reading, terminal

@@ -22,7 +22,8 @@ from ..studies.compare.output import (
 )
 from ..studies.compare.plan import Plan
 from ..studies.compare.result import Comparison
-from ..studies.options import OUTPUT, STUDY, CompareOptions
+from ..studies.option_info import OUTPUT, STUDY
+from ..studies.options import CompareOptions
 from ..studies.output_folder import output_folder
 from ..studies.table import choose_display_unit, format_number
 from ..support import parse

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Sequence
 
 from .._core import InputError
 from ..simulation.engines import STUDY_ENGINE
-from ..studies.options import STUDY, EvaluateOptions
+from ..studies.option_info import STUDY
+from ..studies.options import EvaluateOptions
 from ..studies.output_folder import output_folder
 from . import options, reading, terminal
 from .failed_flights import report_failures

@@ -14,7 +14,7 @@ from ..model.overrides import LINK_NAMES
 from ..simulation.engines import STUDY_ENGINE
 from ..studies.fit.record import CHANNELS
 from ..studies.flight_folder import DOCUMENT
-from ..studies.options import FLIGHT, OUTPUT, STUDY
+from ..studies.option_info import FLIGHT, OUTPUT, STUDY
 from ..studies.output_folder import output_folder
 from ..support import parse
 from ..support.output_files import atomic_write, check_writable, encode_text

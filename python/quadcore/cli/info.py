@@ -15,7 +15,7 @@ from .._core import InputError, parse_number
 from ..model import resources
 from ..simulation.simulation import Simulation
 from ..studies.evaluate.poles import describe_yaw_zero, find_yaw_zero
-from ..studies.options import OUTPUT
+from ..studies.option_info import OUTPUT
 from ..support.output_files import atomic_write
 from ..thesis.chapter2.vehicle import Vehicle
 from . import options, reading, terminal

@@ -10,7 +10,8 @@ from .._core import InputError, parse_number
 from ..control import references
 from ..formats import FORMATS
 from ..simulation.engines import STUDY_ENGINE
-from ..studies.options import CONTROLLER, STUDY, MeasureOptions
+from ..studies.option_info import CONTROLLER, STUDY
+from ..studies.options import MeasureOptions
 from ..studies.output_folder import output_folder
 from ..support import parse
 from . import evaluate, options, reading, terminal

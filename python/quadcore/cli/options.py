@@ -15,20 +15,17 @@ from ..model.overrides import LINK_NAMES
 from ..report.drawing import FORMATS
 from ..simulation.engines import ENGINE, list_engines
 from ..simulation.scenarios import NONE
-from ..studies.options import (
+from ..studies.option_info import (
     CONTROLLER,
     FLIGHT,
     OUTPUT,
-    SPAWNED,
     STUDY,
     VEHICLE,
-    Names,
     OptionInfo,
-    Options,
-    change_option,
     describe_options,
     explain,
 )
+from ..studies.options import SPAWNED, Names, Options, change_option
 from ..support import parse
 from ..support.arguments import FLAG
 from ..support.values import Number

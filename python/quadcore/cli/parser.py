@@ -9,7 +9,7 @@ import textwrap
 from typing import Any, Callable, NoReturn, Sequence
 
 from .._core import InputError
-from ..studies.options import GROUPS
+from ..studies.option_info import GROUPS
 from ..support.parameters import suggest
 
 

@@ -10,7 +10,7 @@ from typing import Any, List, Optional, Sequence
 from .._core import InputError
 from ..model import resources
 from ..report.cameras import CAMERAS
-from ..studies.options import OUTPUT, VEHICLE
+from ..studies.option_info import OUTPUT, VEHICLE
 from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, terminal
 from .parser import add_command, complete_from, find_group

@@ -14,7 +14,7 @@ from ..model.visuals import read_vehicle
 from ..report.drawn_vehicle import DrawnVehicle, DrawnWorld
 from ..simulation.log import Log
 from ..studies.flight_folder import ListedFlight, list_flights
-from ..studies.options import OUTPUT
+from ..studies.option_info import OUTPUT
 from ..support import parse
 from ..support.input_files import is_file
 from . import options

@@ -9,7 +9,7 @@ from typing import Any, List, Sequence
 from ..report.decimation import decimate
 from ..report.drawing import save_drawings
 from ..simulation.log import Log
-from ..studies.options import OUTPUT
+from ..studies.option_info import OUTPUT
 from ..support.output_files import make_folder
 from . import options, terminal
 from .parser import add_command, find_group

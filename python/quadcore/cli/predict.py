@@ -8,7 +8,7 @@ from typing import Any
 
 from ..simulation.flight_plan import FlightPlan
 from ..studies.flight_folder import DOCUMENT
-from ..studies.options import OUTPUT, STUDY
+from ..studies.option_info import OUTPUT, STUDY
 from ..studies.output_folder import output_folder
 from . import options, reading, terminal
 from .parser import add_command, find_group

@@ -10,7 +10,8 @@ from .._core import InputError
 from ..simulation.flight_plan import FlightPlan
 from ..studies.axes import parse_axis
 from ..studies.control_setup import ControlSetup
-from ..studies.options import Options, describe_options
+from ..studies.option_info import describe_options
+from ..studies.options import Options
 from ..support.values import SPAWN
 
 Kind = TypeVar("Kind", bound=Options)

@@ -12,7 +12,7 @@ from ..simulation.controller_pilot import convert_controller_errors
 from ..simulation.engines import check_wrenches, list_engines
 from ..simulation.flight import fly
 from ..studies.flight_folder import DOCUMENT
-from ..studies.options import OUTPUT, VEHICLE
+from ..studies.option_info import OUTPUT, VEHICLE
 from ..studies.output_folder import output_folder
 from ..support import interrupts, parse
 from . import options, reading, run_folder, terminal

@@ -12,7 +12,7 @@ from ..serve import Server
 from ..serve.server import TIMEOUT
 from ..simulation.flight import list_columns
 from ..simulation.log import check_log_path, make_log_file
-from ..studies.options import OUTPUT
+from ..studies.option_info import OUTPUT
 from ..support import parse
 from . import options, reading, terminal
 from .parser import add_command, find_group

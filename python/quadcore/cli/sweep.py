@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ..simulation.engines import STUDY_ENGINE
 from ..studies import tracking_metrics
 from ..studies.distributions import DESIGNS, list_forms
-from ..studies.options import OUTPUT, STUDY, SweepOptions
+from ..studies.option_info import OUTPUT, STUDY
+from ..studies.options import SweepOptions
 from ..studies.output_folder import output_folder
 from ..studies.sweep import motion_metrics
 from ..support import parse

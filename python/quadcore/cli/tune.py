@@ -11,7 +11,8 @@ from ..control import controllers, gains
 from ..model import resources
 from ..simulation.engines import STUDY_ENGINE
 from ..studies.flight_folder import DOCUMENT
-from ..studies.options import CONTROLLER, OUTPUT, STUDY, VEHICLE, ControlOptions
+from ..studies.option_info import CONTROLLER, OUTPUT, STUDY, VEHICLE
+from ..studies.options import ControlOptions
 from ..studies.output_folder import output_folder
 from ..support import parse
 from ..support.output_files import check_writable

@@ -12,7 +12,7 @@ from .._core import FlightError, InputError, QuadcoreError, engines
 from ..report.drawing import Drawing
 from ..simulation.flight_plan import FlightPlan
 from ..studies.executor import run_contained
-from ..studies.options import FLIGHT, STUDY
+from ..studies.option_info import FLIGHT, STUDY
 from ..support import interrupts, parse
 from ..support.output_files import atomic_write, prepare_folder
 from ..support.values import SPAWN

@@ -6,10 +6,7 @@ as ``--FLAG``, and files of options as ``FLAG: VALUE``. Help texts and docstring
 
 from __future__ import annotations
 
-import functools
-import inspect
-import textwrap
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import (
     Any,
@@ -17,14 +14,10 @@ from typing import (
     Dict,
     List,
     Mapping,
-    NamedTuple,
     Optional,
     Sequence,
-    Type,
     TypedDict,
-    TypeVar,
     Union,
-    get_type_hints,
 )
 
 from .._core import InputError
@@ -33,56 +26,26 @@ from ..model.overrides import LINK_NAMES
 from ..simulation.engines import STUDY_ENGINE
 from ..simulation.scenarios import NONE
 from ..support import arguments, parse
-from ..support.arguments import Kind
 from ..support.values import SPAWN, Number, Value
 from .criteria import CONSTRAINTS, METRICS, Criteria, Metric
+from .option_info import (
+    CONTROLLER,
+    FLIGHT,
+    OUTPUT,
+    STUDY,
+    VEHICLE,
+    OptionInfo,
+    describe_option,
+    describe_options,
+    list_kinds,
+)
 from .tracking_metrics import FAILURE_DISTANCE
 
 Names = Union[str, Path, Sequence[Union[str, Path]]]
 Progress = Callable[[int, int], None]
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 SPAWNED = "{:g},{:g},{:g}".format(*SPAWN)
 """Default start position, as --spawn takes it."""
-
-VEHICLE, FLIGHT, CONTROLLER, STUDY, OUTPUT = GROUPS = (
-    "vehicle and world",
-    "flight",
-    "controller",
-    "study",
-    "output",
-)
-"""Headings under which `--help` lists options, in this order."""
-
-
-class OptionInfo(NamedTuple):
-    """How an option is written, read, checked and explained."""
-
-    group: str
-    """One of `GROUPS`."""
-    flag: str
-    """Name on the command line; "" for an option of the Python functions only."""
-    metavar: str
-    meaning: str
-    read: Callable[[str], Any]
-    """Reads the text of the command line."""
-    kind: Kind
-    without: str
-    """Default in words, "" if the default value is clear."""
-    repeats: bool
-
-
-def _describe(
-    group: str,
-    flag: str,
-    metavar: str,
-    meaning: str,
-    read: Callable[[str], Any] = str,
-    kind: Kind = arguments.ANY,
-    without: str = "",
-    repeats: bool = False,
-) -> Dict[str, OptionInfo]:
-    return {"about": OptionInfo(group, flag, metavar, meaning, read, kind, without, repeats)}
 
 
 @dataclass(frozen=True)
@@ -95,87 +58,87 @@ class Options:
         If a value is of another kind than its option's.
     """
 
-    parameters: Optional[Mapping[str, Value]] = field(default=None, metadata=_describe(
+    parameters: Optional[Mapping[str, Value]] = field(default=None, metadata=describe_option(
         VEHICLE, "set", "PLUGIN.TAG=VALUE",
         f"value of a plugin tag, or of {LINK_NAMES}, xacro.ARG",
         parse.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         arguments.OPTIONS["parameters"], repeats=True,
     ))  # fmt: skip
-    xacro_args: Optional[Mapping[str, object]] = field(default=None, metadata=_describe(
+    xacro_args: Optional[Mapping[str, object]] = field(default=None, metadata=describe_option(
         VEHICLE, "xacro", "ARG:=VALUE", "argument of the xacro file",
         parse.assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
         arguments.OPTIONS["xacro_args"], repeats=True,
     ))  # fmt: skip
-    ignore: Sequence[str] = field(default=(), metadata=_describe(
+    ignore: Sequence[str] = field(default=(), metadata=describe_option(
         VEHICLE, "ignore", "NAME",
         "foreign plugin (name or file name), element, or model of the world to ignore",
         kind=arguments.OPTIONS["ignore"], repeats=True,
     ))  # fmt: skip
-    world: Union[str, Path, None] = field(default=None, metadata=_describe(
+    world: Union[str, Path, None] = field(default=None, metadata=describe_option(
         VEHICLE, "world", "FILE",
         f"world file, or a built-in world: {', '.join(resources.list_shipped('worlds'))}",
         kind=arguments.ANY, without="empty",
     ))  # fmt: skip
-    at: Optional[Sequence[float]] = field(default=None, metadata=_describe(
+    at: Optional[Sequence[float]] = field(default=None, metadata=describe_option(
         VEHICLE, "at", "LAT,LON[,ALT]",
         "place on Earth of the world's origin in degrees and m, which sets gravity, magnetic field "
         "and the origin of GPS receivers", parse.location,
         arguments.or_none(arguments.PLACE), "that of the world",
     ))  # fmt: skip
-    dt: Optional[float] = field(default=None, metadata=_describe(
+    dt: Optional[float] = field(default=None, metadata=describe_option(
         FLIGHT, "dt", "S", "step in seconds", parse.positive,
         arguments.OPTIONS["dt"], "the world's",
     ))  # fmt: skip
-    scenario: Optional[Names] = field(default=None, metadata=_describe(
+    scenario: Optional[Names] = field(default=None, metadata=describe_option(
         FLIGHT, "scenario", "A,B",
         "scenario files or built-in scenarios of disturbances and faults: "
         + ", ".join([NONE, *resources.list_shipped("config/scenarios")]),
         parse.names, without=NONE,
     ))  # fmt: skip
-    wind: Optional[Sequence[float]] = field(default=None, metadata=_describe(
+    wind: Optional[Sequence[float]] = field(default=None, metadata=describe_option(
         FLIGHT, "wind", "X,Y,Z", "constant wind in m/s, world axes", parse.vector,
         arguments.or_none(arguments.VECTOR), "that of the world, model and scenario",
     ))  # fmt: skip
     seed: int = field(
         default=0,
-        metadata=_describe(
+        metadata=describe_option(
             FLIGHT, "seed", "N", "first seed of the noise", parse.integer(0, 2**64 - 1)
         ),
     )
-    seeds: int = field(default=1, metadata=_describe(
+    seeds: int = field(default=1, metadata=describe_option(
         STUDY, "seeds", "N", "number of consecutive seeds", parse.integer(1), arguments.COUNT,
     ))  # fmt: skip
     duration: float = field(
         default=10.0,
-        metadata=_describe(
+        metadata=describe_option(
             FLIGHT, "duration", "S", "simulated time in seconds", parse.positive, arguments.SECONDS
         ),
     )
-    spawn: Optional[Sequence[Number]] = field(default=None, metadata=_describe(
+    spawn: Optional[Sequence[Number]] = field(default=None, metadata=describe_option(
         FLIGHT, "spawn", "X,Y,Z[,ROLL,PITCH,YAW]", "start pose of the frame link in m and rad",
         parse.pose, without="on the reference",
     ))  # fmt: skip
-    log_every: Optional[int] = field(default=None, metadata=_describe(
+    log_every: Optional[int] = field(default=None, metadata=describe_option(
         OUTPUT, "log-every", "N", "steps per logged and evaluated row",
         parse.integer(1), without="one row per 0.01 s",
     ))  # fmt: skip
-    controller_rate: Optional[float] = field(default=None, metadata=_describe(
+    controller_rate: Optional[float] = field(default=None, metadata=describe_option(
         CONTROLLER, "controller-rate", "HZ", "controller calls per simulated second",
         parse.positive, without="the controller's, else 500",
     ))  # fmt: skip
-    delay: Optional[float] = field(default=None, metadata=_describe(
+    delay: Optional[float] = field(default=None, metadata=describe_option(
         CONTROLLER, "delay", "S", "actuation delay in seconds", parse.not_negative,
         without="the controller's, else 0",
     ))  # fmt: skip
-    time_limit: float = field(default=300.0, metadata=_describe(
+    time_limit: float = field(default=300.0, metadata=describe_option(
         STUDY, "time-limit", "S", "wall-clock limit per flight in seconds",
         parse.positive, arguments.LIMIT,
     ))  # fmt: skip
-    processes: Optional[int] = field(default=None, metadata=_describe(
+    processes: Optional[int] = field(default=None, metadata=describe_option(
         STUDY, "jobs", "N", "number of processes", parse.integer(1),
         arguments.or_none(arguments.COUNT), "one per core",
     ))  # fmt: skip
-    progress: Optional[Progress] = field(default=None, metadata=_describe(
+    progress: Optional[Progress] = field(default=None, metadata=describe_option(
         STUDY, "", "", "function called as progress(done, total)",
         kind=arguments.or_none(arguments.PROGRESS), without="none",
     ))  # fmt: skip
@@ -213,22 +176,17 @@ def change_option(name: str, **parts: Any) -> Dict[str, OptionInfo]:
     return {"about": describe_options(Options)[name]._replace(**parts)}
 
 
-def describe_options(kind: Type[Options]) -> Dict[str, OptionInfo]:
-    """Return the description of each option, by name."""
-    return {each.name: each.metadata["about"] for each in fields(kind)}
-
-
 @dataclass(frozen=True)
 class ControlOptions(Options):
     """Options of studies that judge controllers."""
 
-    privileged: bool = field(default=False, metadata=_describe(
+    privileged: bool = field(default=False, metadata=describe_option(
         CONTROLLER, "privileged", "",
         "give your own controllers the whole simulation instead of a view of the vehicle; "
         "the results mark them",
         kind=arguments.FLAG, without="false",
     ))  # fmt: skip
-    failure_distance: float = field(default=FAILURE_DISTANCE, metadata=_describe(
+    failure_distance: float = field(default=FAILURE_DISTANCE, metadata=describe_option(
         STUDY, "failure-distance", "M", "tracking error in m at which a flight has failed",
         parse.positive, arguments.DISTANCE,
     ))  # fmt: skip
@@ -245,14 +203,14 @@ class ControlKeywords(Keywords, total=False):
 class CriteriaOptions(ControlOptions):
     """Options of studies that measure flights."""
 
-    constraints: Optional[Mapping[str, Any]] = field(default=None, metadata=_describe(
+    constraints: Optional[Mapping[str, Any]] = field(default=None, metadata=describe_option(
         STUDY, "constraint", "NAME=LIMIT",
         f"measure the time in violation of a constraint: {', '.join(CONSTRAINTS)}; geofence "
         "takes XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
         parse.assignment(r"([^=]+)=(.+)", "NAME=LIMIT"),
         arguments.or_none(arguments.NAMED), repeats=True,
     ))  # fmt: skip
-    metrics: Sequence[Metric] = field(default=(), metadata=_describe(
+    metrics: Sequence[Metric] = field(default=(), metadata=describe_option(
         STUDY, "metric", "NAME",
         f"further metric: {', '.join(METRICS)}; or your function of the log, FILE.py:NAME or "
         "MODULE:NAME",
@@ -276,18 +234,18 @@ class EvaluateOptions(CriteriaOptions):
     """Options of `evaluate`."""
 
     duration: float = field(default=30.0, metadata=change_option("duration"))
-    computation_time: Union[float, str, None] = field(default=None, metadata=_describe(
+    computation_time: Union[float, str, None] = field(default=None, metadata=describe_option(
         CONTROLLER, "computation-time", "S|measured",
         "delay each command also by the computation time of its controller: in seconds, or as "
         "measured on this machine",
         parse.computation_time, arguments.COMPUTATION_TIME, "none",
     ))  # fmt: skip
-    spectra: bool = field(default=False, metadata=_describe(
+    spectra: bool = field(default=False, metadata=describe_option(
         STUDY, "spectra", "",
         "also draw the power spectral densities of angular velocities and commands",
         kind=arguments.FLAG, without="false",
     ))  # fmt: skip
-    frequency_response: bool = field(default=False, metadata=_describe(
+    frequency_response: bool = field(default=False, metadata=describe_option(
         STUDY, "frequency-response", "",
         "also measure the frequency responses of the loops in hover",
         kind=arguments.FLAG, without="false",
@@ -346,65 +304,3 @@ def choose_engines(engine: Optional[str], engines: Union[str, Sequence[str]]) ->
     if engines != STUDY_ENGINE:
         raise InputError("engine and engines are both given. Keep one.")
     return [engine]
-
-
-def list_kinds(kind: Type[Options]) -> Dict[str, Kind]:
-    """Give the kind of each option's value, by name."""
-    return {name: about.kind for name, about in describe_options(kind).items()}
-
-
-def explain(about: OptionInfo, default: Any) -> str:
-    """Write the meaning and the default of an option in one line."""
-    plain = f"{default:g}" if isinstance(default, float) else str(default)
-    without = about.without or ("" if default in (None, ()) else plain)
-    return f"{about.meaning} (default: {without})" if without else about.meaning
-
-
-def accept_options(kind: Type[Options], **own: Kind) -> Callable[[Function], Function]:
-    """Let a function take options as ``**options``, shown by its signature and docstring.
-
-    Parameters
-    ----------
-    kind
-        The options.
-    **own
-        Kinds of other arguments; all are checked before the function is called.
-    """
-
-    def decorate(function: Function) -> Function:
-        signature, hints = inspect.signature(function), get_type_hints(kind)
-        *named, rest = signature.parameters.values()
-        known = {**{each.name: arguments.ANY for each in named}, **own, **list_kinds(kind)}
-
-        @functools.wraps(function)
-        def call(*values: Any, **given: Any) -> Any:
-            bound = signature.bind(*values, **given)
-            read = {name: arguments.read_once(value) for name, value in bound.arguments.items()}
-            bound.arguments.update(read)
-            arguments.check({**read.pop(rest.name, {}), **read}, known)
-            return function(*bound.args, **bound.kwargs)
-
-        options = [
-            inspect.Parameter(
-                each.name,
-                inspect.Parameter.KEYWORD_ONLY,
-                default=each.default,
-                annotation=hints[each.name],
-            )
-            for each in fields(kind)
-        ]
-        call.__signature__ = signature.replace(parameters=[*named, *options])  # type: ignore[attr-defined]
-        call.__doc__ = (function.__doc__ or "").replace("    **options\n", _paragraphs(kind))
-        return call  # type: ignore[return-value]
-
-    return decorate
-
-
-def _paragraphs(kind: Type[Options]) -> str:
-    """Write the options as a docstring's parameters."""
-    lines = []
-    for each in fields(kind):
-        meaning = explain(each.metadata["about"], each.default)
-        description = textwrap.fill(f"{meaning[0].upper()}{meaning[1:]}.", 88)
-        lines.append(f"    {each.name}\n{textwrap.indent(description, ' ' * 8)}\n")
-    return "".join(lines)

@@ -19,10 +19,11 @@ from ...simulation.commands import CommandsLike
 from ...simulation.engines import ENGINE, AnyEngineName
 from ...simulation.log import Log
 from ...support import arguments, interrupts
+from ..accept_options import accept_options
 from ..axes import Values
 from ..control_setup import ControlSetup
 from ..executor import run_contained
-from ..options import CompareOptions, Keywords, Names, accept_options
+from ..options import CompareOptions, Keywords, Names
 from .plan import Plan
 from .result import Comparison, Keep, Measured, Outcome, Progress, Tally, measure
 

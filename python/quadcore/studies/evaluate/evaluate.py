@@ -28,19 +28,13 @@ from ...simulation.engines import STUDY_ENGINE, AnyEngineName
 from ...simulation.flight_plan import FlightPlan
 from ...support import arguments
 from ...support.warning import warn
+from ..accept_options import accept_options
 from ..axes import Values
 from ..control_setup import Controllers, References
 from ..executor import contain_errors, count_cores, run_contained
 from ..grouped_flights import MOST_VECTORIZED, FlightRecord, fly_group, share_out, split
 from ..measured_flight import Outcome, fly_alone, measure_record
-from ..options import (
-    EvaluateKeywords,
-    EvaluateOptions,
-    Names,
-    Progress,
-    accept_options,
-    choose_engines,
-)
+from ..options import EvaluateKeywords, EvaluateOptions, Names, Progress, choose_engines
 from ..table import count_outcomes
 from ..time_limit import time_limit
 from ..tracking_metrics import UNITS

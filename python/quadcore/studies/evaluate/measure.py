@@ -24,10 +24,11 @@ from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support import arguments
 from ...support.warning import suppress_warnings
+from ..accept_options import accept_options
 from ..cases import Case
 from ..control_setup import Controllers, make_reference
 from ..measured_flight import Outcome
-from ..options import CriteriaKeywords, EvaluateOptions, MeasureOptions, Progress, accept_options
+from ..options import CriteriaKeywords, EvaluateOptions, MeasureOptions, Progress
 from .evaluate import Evaluation, fly_plan
 from .plan import Plan
 from .recorded_flight import Alignment, RecordedFlight, align_flight, read_recorded_flight

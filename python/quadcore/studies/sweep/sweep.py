@@ -24,15 +24,9 @@ from ..._core import InputError
 from ...simulation.commands import CommandsLike
 from ...simulation.engines import STUDY_ENGINE, AnyEngineName
 from ...support import arguments, interrupts
+from ..accept_options import accept_options
 from ..control_setup import Controllers, References
-from ..options import (
-    CriteriaKeywords,
-    Names,
-    Progress,
-    SweepOptions,
-    accept_options,
-    choose_engines,
-)
+from ..options import CriteriaKeywords, Names, Progress, SweepOptions, choose_engines
 from ..output_folder import output_folder
 from ..table import count_outcomes
 from .dask import connect_cluster

@@ -11,9 +11,10 @@ from ...simulation.engines import STUDY_ENGINE, AnyEngineName
 from ...support import arguments
 from ...support.arguments import to_list
 from ...support.optional_packages import require_package
+from ..accept_options import accept_options
 from ..axes import Values
 from ..control_setup import References
-from ..options import ControlKeywords, ControlOptions, Names, Progress, accept_options
+from ..options import ControlKeywords, ControlOptions, Names, Progress
 from .problem import Problem
 from .search import Search, Tuning
 
