@@ -2,45 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any
 
-from .. import _core
 from .built_in import BuiltInController
-from .compiled_controller import CompiledController, find_compiled
-from .controller import check_callable
 from .plugin_controller import PluginController
 from .vehicle import Vehicle
+from .wrapped_controller import WrappedController
 
 PRIVILEGED = " (privileged)"
 """Mark in the label of a controller that has access to the whole simulation."""
 
 
-class FairController:
+class FairController(WrappedController):
     """Wrap a user-defined controller; its attributes are those of the wrapped one.
 
     `reset` receives a `Vehicle`. The odometry gives access to the topics of sensors only.
-
-    Raises
-    ------
-    InputError
-        If the object cannot be called as a controller.
     """
 
     reads_sensors_only = True
-
-    def __init__(self, controller: Any) -> None:
-        check_callable(controller)
-        self.__dict__.update(_controller=controller)
-
-    @property
-    def compiled(self) -> Optional[CompiledController]:
-        """The compiled controller that the core may call in its place."""
-        return find_compiled(self._controller)
-
-    def __getattr__(self, name: str) -> Any:
-        if name == "_controller":  # copy and pickle ask before it is set
-            raise AttributeError(name)
-        return getattr(self._controller, name)
 
     def __setattr__(self, name: str, value: Any) -> None:
         setattr(self._controller, name, value)
@@ -50,10 +29,6 @@ class FairController:
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             reset(simulation if isinstance(simulation, Vehicle) else Vehicle(simulation))
-
-    def __call__(self, t: float, state: _core.Odometry, reference: Any) -> Any:
-        """Call the controller."""
-        return self._controller(t, state, reference)
 
 
 def restrict(controller: Any) -> Any:

@@ -7,12 +7,12 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..._core import InputError, ParameterInfo, parse_number
 from ...control.built_in import BuiltInController
-from ...control.compiled_controller import CompiledController, find_compiled
-from ...control.controller import SENSED, check_callable, set_parameter
+from ...control.controller import SENSED, set_parameter
 from ...control.fair_controller import FairController
 from ...control.inner_loop import InnerLoop
 from ...control.plugin_controller import PluginController
 from ...control.vehicle import Vehicle
+from ...control.wrapped_controller import WrappedController
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.simulation import Simulation
 from ...simulation.state import State
@@ -119,12 +119,12 @@ def _scaling_tags(simulation: Simulation) -> Iterator[Tuple[str, ParameterInfo, 
                 yield f"{plugin.name}.{tag.name}", tag, number
 
 
-class _NominalModelController:
+class _NominalModelController(WrappedController):
     """Wrap a user-defined controller, which receives the nominal vehicle in `reset`."""
 
     def __init__(self, controller: Any, vehicle: Simulation) -> None:
-        check_callable(controller)
-        self._controller, self._vehicle = controller, vehicle
+        super().__init__(controller)
+        self._vehicle = vehicle
         own = getattr(controller, "inner_loop", None)
         if own is None:
             self.inner_loop = InnerLoop(belief=vehicle)
@@ -132,21 +132,9 @@ class _NominalModelController:
             parameters: Dict[str, Any] = own.parameters
             self.inner_loop = InnerLoop(own.spins, vehicle, **parameters)
 
-    @property
-    def compiled(self) -> Optional[CompiledController]:
-        """The compiled controller that the core may call in its place."""
-        return find_compiled(self._controller)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._controller, name)
-
     def reset(self, flown: Simulation) -> None:
         """Reset the controller with the nominal vehicle, and the sensors of the simulated one."""
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             is_fair = isinstance(self._controller, FairController)
             reset(Vehicle(self._vehicle, flown) if is_fair else self._vehicle)
-
-    def __call__(self, t: float, state: Any, reference: Any) -> Any:
-        """Call the controller."""
-        return self._controller(t, state, reference)
