@@ -1,6 +1,8 @@
 #pragma once
 
+#include "lanes/arc_tangent.hpp"
 #include "lanes/sine_cosine.hpp"
+#include "lanes/vec3.hpp"
 #include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::laws {
@@ -18,6 +20,22 @@ QUADCORE_LAW SineCosine<T> sine_and_cosine(T x) {
     cosines[i] = one.cos;
   }
   return {load<T>(sines), load<T>(cosines)};
+}
+
+/// Return the arc sine [rad] of the nearest number in [-1, 1], for sines with rounding errors.
+template <class T>
+QUADCORE_LAW T nearest_arc_sine(T sine) {
+  return arc_sine(chosen_by(absolute(sine) > 1, with_sign_of(sine, broadcast<T>(1)), sine));
+}
+
+/// Return roll, pitch and yaw [rad] of a rotation, see rpy_from_quaternion().
+template <class T>
+QUADCORE_LAW Vec3<T> roll_pitch_yaw(const Matrix3<T>& R) {
+  // At a pitch of +-90 degrees, roll and yaw rotate about the same axis; yaw takes the whole
+  // rotation.
+  const auto is_vertical = absolute(R.zx) > 1 - 1e-12;
+  return {chosen_by(is_vertical, T{}, arc_tangent(R.zy, R.zz)), nearest_arc_sine(-R.zx),
+          arc_tangent(chosen_by(is_vertical, -R.xy, R.yx), chosen_by(is_vertical, R.yy, R.xx))};
 }
 
 }  // namespace quadcore::laws

@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "argument_reduction.hpp"
+#include "lanes/arc_tangent.hpp"
 #include "lanes/logarithm.hpp"
 #include "lanes/sine_cosine.hpp"
 
-// The minimax polynomials are those of fdlibm 5.3 (Sun Microsystems, 1993, s_atan.c,
-// e_exp.c at netlib.org/fdlibm), whose files derive them and bound their errors; splitting the
-// argument in two follows W. J. Cody, W. Waite, "Software Manual for the Elementary Functions",
-// 1980.
+// The minimax polynomials are those of fdlibm 5.3 (Sun Microsystems, 1993, e_exp.c at
+// netlib.org/fdlibm), whose files derive them and bound their errors; splitting the argument in two
+// follows W. J. Cody, W. Waite, "Software Manual for the Elementary Functions", 1980.
 //
 // No library replaces them: SLEEF 3.5 and correctly rounded functions differ in the last digit of
 // 3 % (sine) to 18 % (atan2) of the values, which would change every recorded flight.
@@ -25,43 +25,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 using laws::ln2_high;
 using laws::ln2_low;
-
-/// Return the arc tangent of x >= 0.
-double atan_of_positive(double x) {
-  // Reduced by atan(x) = atan(c) + atan((x - c)/(1 + c x)), c = 0.5, 1, 1.5, infinity.
-  double high = 0, low = 0;
-  if (x > 2.4375) {
-    high = 1.57079632679489655800e+00;
-    low = 6.12323399573676603587e-17;
-    x = -1 / x;
-  } else if (x > 1.1875) {
-    high = 9.82793723247329054082e-01;
-    low = 1.39033110312309984516e-17;
-    x = (x - 1.5) / (1 + 1.5 * x);
-  } else if (x > 0.6875) {
-    high = 7.85398163397448278999e-01;
-    low = 3.06161699786838301793e-17;
-    x = (x - 1) / (x + 1);
-  } else if (x > 0.4375) {
-    high = 4.63647609000806093515e-01;
-    low = 2.26987774529616870924e-17;
-    x = (2 * x - 1) / (2 + x);
-  }
-  const double z = x * x;
-  const double w = z * z;
-  const double odd =
-      z * (3.33333333333329318027e-01 +
-           w * (1.42857142725034663711e-01 +
-                w * (9.09088713343650656196e-02 +
-                     w * (6.66107313738753120669e-02 +
-                          w * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02)))));
-  const double even =
-      w * (-1.99999999998764832476e-01 +
-           w * (-1.11111104054623557880e-01 +
-                w * (-7.69187620504482999495e-02 +
-                     w * (-5.83357013379057348645e-02 + w * -3.65315727442169155270e-02))));
-  return high - ((x * (odd + even) - low) - x);
-}
 
 /// 2^k for -1022 <= k <= 1023.
 double power_of_two(int k) {
@@ -79,20 +42,9 @@ SineCosine sincos(double x) {
   return {result.sin, result.cos};
 }
 
-double atan2(double y, double x) {
-  constexpr double pi_high = 3.1415926535897931160e+00;
-  constexpr double pi_low = 1.2246467991473531772e-16;
-  constexpr double two_to_60 = 1152921504606846976.0;
-  if (std::isnan(x) || std::isnan(y)) return nan;
-  const double ay = std::abs(y), ax = std::abs(x);
-  const double ratio = ay == 0 ? 0 : std::isinf(ay) && std::isinf(ax) ? 1 : ay / ax;
-  const double angle = atan_of_positive(ratio);
-  const bool left =
-      std::signbit(x) && ratio < two_to_60;  // beyond it, the result is a quarter turn
-  return std::copysign(left ? pi_high - (angle - pi_low) : angle, y);
-}
+double atan2(double y, double x) { return laws::arc_tangent(y, x); }
 
-double asin(double x) { return std::abs(x) <= 1 ? atan2(x, std::sqrt((1 - x) * (1 + x))) : nan; }
+double asin(double x) { return laws::arc_sine(x); }
 
 double log(double x) {
   if (!(x > 0)) return x == 0 ? -infinity : nan;

@@ -1,8 +1,6 @@
 #include "quadcore/plugin/spatial.hpp"
 
-#include <algorithm>
-#include <cmath>
-
+#include "laws/angles.hpp"
 #include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore {
@@ -18,12 +16,8 @@ Quaterniond quaternion_from_rpy(const Vector3d& rpy) {
 
 Vector3d rpy_from_quaternion(const Quaterniond& q) {
   const Matrix3d R = q.toRotationMatrix();
-  const double sin_pitch = std::clamp(-R(2, 0), -1.0, 1.0);
-  const double pitch = elementary::asin(sin_pitch);
-  // At a pitch of +-90 degrees, roll and yaw rotate about the same axis; yaw takes the whole
-  // rotation.
-  if (std::abs(sin_pitch) > 1 - 1e-12) return {0, pitch, elementary::atan2(-R(0, 1), R(1, 1))};
-  return {elementary::atan2(R(2, 1), R(2, 2)), pitch, elementary::atan2(R(1, 0), R(0, 0))};
+  const laws::Vec3<double> rpy = laws::roll_pitch_yaw(laws::matrix(R.data()));
+  return {rpy.x, rpy.y, rpy.z};
 }
 
 Quaterniond quaternion_about(const Vector3d& axis, double angle) {
