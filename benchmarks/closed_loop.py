@@ -47,7 +47,8 @@ rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 11
 for engine in ("eigen", "gazebo11"):
     sim = qc.Simulation("quadrotor", engine=engine, xacro_args={"sim_slow": 1})
     for name in ("geometric", "pd", "lqr", "indi", "pid"):
-        share = median(ratios(sim, run(name), rounds))
+        controller = qc.controllers.parse(f"{name}:rate=500")
+        share = median(ratios(sim, run(controller), rounds))
         print(f"{engine:8} {name:9} closed / open loop {share:6.2f}, at least {LEAST_SHARE}")
 sim = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
 calls = 500 * DURATION

@@ -1,10 +1,5 @@
 #include "cascade.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "euler_rates.hpp"
-
 namespace quadcore::control {
 namespace {
 
@@ -14,8 +9,6 @@ T gain(const char* name, const char* unit, const char* fallback, const char* mea
        const char* equation) {
   return T::number(name, unit, fallback, meaning).at_least(0).from(equation);
 }
-
-Eigen::Map<Vector3d> vector(double* numbers) { return Eigen::Map<Vector3d>(numbers); }
 
 }  // namespace
 
@@ -55,89 +48,35 @@ const Settings<Cascade::Gains>& Cascade::settings() {
   return all;
 }
 
-Cascade::Cascade(const ModelledVehicle& model, const Gains& gains) : model_(model), gains_(gains) {
-  const Gains& g = gains_;
-  outer_p_ = g.scale * Vector3d(g.kp_xy, g.kp_xy, g.kp_z);
-  outer_i_ = g.scale * Vector3d(g.ki_xy, g.ki_xy, g.ki_z);
-  outer_d_ = g.scale * Vector3d(g.kd_xy, g.kd_xy, g.kd_z);
-  inner_p_ = g.scale * Vector3d(g.kp_rp, g.kp_rp, g.kp_yaw);
-  inner_i_ = g.scale * Vector3d(g.ki_rp, g.ki_rp, g.ki_yaw);
-  inner_d_ = g.scale * Vector3d(g.kd_rp, g.kd_rp, g.kd_yaw);
+Cascade::Cascade(const ModelledVehicle& model, const Gains& g)
+    : model_(model), switches_{g.feed_forward, g.flat_rates, true, g.drag, g.gyroscopic} {
+  const auto scaled = [&](double x, double y, double z) {
+    return Vec3<double>{g.scale * x, g.scale * y, g.scale * z};
+  };
+  numbers_ = {scaled(g.kp_xy, g.kp_xy, g.kp_z),
+              scaled(g.ki_xy, g.ki_xy, g.ki_z),
+              scaled(g.kd_xy, g.kd_xy, g.kd_z),
+              scaled(g.kp_rp, g.kp_rp, g.kp_yaw),
+              scaled(g.ki_rp, g.ki_rp, g.ki_yaw),
+              scaled(g.kd_rp, g.kd_rp, g.kd_yaw),
+              numbers_of(model)};
+}
+
+WrenchController::Feeds Cascade::feeds() const {
+  if (!switches_.flat_rates) return Feeds::nothing;
+  return switches_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
 }
 
 Demand Cascade::demand(const ControllerInput& input, double* memory) const {
-  const Odometry& now = input.now;
-  const Matrix3d R_WF = now.orientation.toRotationMatrix();
-  const Vector3d rpy = rpy_from_quaternion(now.orientation);
-
-  std::optional<FlatState> flat;
-  if (gains_.flat_rates) {
-    flat = input.flat ? *input.flat : flat_state(input.wanted, model_, gains_.drag);
-  }
-
-  // U* + g e3 (2.56): required force of the rotors per mass, in W.
-  Vector3d lift_W = acceleration(input, memory) + Vector3d(0, 0, model_.gravity);
-  if (flat) lift_W += flat->a_FCcm_W;
-  if (gains_.drag) {
-    lift_W -= model_.air_force_W(R_WF, now.linear_velocity, now.angular_velocity) / model_.mass;
-  }
-
-  // (2.46), (2.47) or (2.53), (2.54), with the measured yaw. The four-quadrant arc tangent makes a
-  // demand beyond free fall turn the vehicle over instead of reversing the demand.
-  const auto [s_yaw, c_yaw] = elementary::sincos(rpy.z());
-  const double size = lift_W.norm();
-  const double pitch = elementary::atan2(lift_W.x() * c_yaw + lift_W.y() * s_yaw, lift_W.z());
-  const double sine = size > 0 ? (lift_W.x() * s_yaw - lift_W.y() * c_yaw) / size : 0;
-  const double roll = elementary::asin(std::clamp(sine, -1.0, 1.0));
-  // (2.48) or (2.55).
-  const double thrust = model_.mass * lift_W.dot(R_WF.col(2));
-  return {thrust, torque(input, flat, rpy, {roll, pitch, input.wanted.yaw}, memory)};
+  return call_with_numbers(input, feeds(), model_, [&](const InputNumbers<double>& numbers) {
+    return demand_by_cascade(CascadeFormulas<double>{switches_, numbers_, numbers},
+                             memory_of<CascadeMemory>(memory));
+  });
 }
 
-/// Return the acceleration of (2.43), with an integral as in section 6.2.
-Vector3d Cascade::acceleration(const ControllerInput& input, double* memory) const {
-  const Reference& wanted = input.wanted;
-  const Vector3d error = wanted.position - input.now.position;
-  auto integral = vector(memory + kPosition);
-  integral += input.period * error;
-  Vector3d a_W = outer_p_.cwiseProduct(error) + outer_i_.cwiseProduct(integral) +
-                 outer_d_.cwiseProduct(wanted.velocity - input.now.linear_velocity);
-  if (gains_.feed_forward) a_W += wanted.acceleration;
-  return a_W;
-}
-
-/// Return the torque of (2.49), (2.50) or (2.57). J(eta) y + C(eta, eta') eta' are generalised
-/// torques, W^T times those about the body axes. With J = W^T I W, the latter are I (W y + W' eta')
-/// + w x I w.
-Vector3d Cascade::torque(const ControllerInput& input, const std::optional<FlatState>& flat,
-                         const Vector3d& rpy, const Vector3d& wanted_rpy, double* memory) const {
-  const Vector3d& w_WF_F = input.now.angular_velocity;
-  const Vector3d rates = rates_of(rpy, w_WF_F);
-  const EulerRates of_now = euler_rates(rpy, rates);
-
-  Vector3d error = wanted_rpy - rpy;
-  error = error.unaryExpr([](double angle) { return wrap_angle(angle); });
-  auto integral = vector(memory + kAngles);
-  integral += input.period * error;
-  // eta_d' of (2.50): the yaw rate comes from the reference, the others from its flat state.
-  Vector3d wanted_rates(0, 0, input.wanted.yaw_rate);
-  Vector3d wanted_accelerations = Vector3d::Zero();
-  if (flat) {
-    const Vector3d flat_rpy = rpy_from_quaternion(Quaterniond(flat->R_WF));
-    wanted_rates = rates_of(flat_rpy, flat->w_WF_F);
-    const EulerRates of_flat = euler_rates(flat_rpy, wanted_rates);
-    // W eta'' = w' - W' eta', and rates_of() divides by W.
-    wanted_accelerations = rates_of(flat_rpy, flat->dw_WF_F - of_flat.dW * wanted_rates);
-  }
-  const Vector3d y = inner_p_.cwiseProduct(error) + inner_i_.cwiseProduct(integral) +
-                     inner_d_.cwiseProduct(wanted_rates - rates) + wanted_accelerations;
-  Vector3d tau_air_F = Vector3d::Zero();
-  if (gains_.drag) {
-    tau_air_F =
-        model_.air_torque_F(input.now.orientation.conjugate() * input.now.linear_velocity, w_WF_F);
-  }
-  const Vector3d h_F = gains_.gyroscopic ? input.h_F : Vector3d(Vector3d::Zero());
-  return torque_for(model_, of_now.W * y + of_now.dW * rates, w_WF_F, h_F, tau_air_F);
+std::shared_ptr<const LaneWrenchController> Cascade::in_lanes(double /*period*/) const {
+  return std::make_shared<LaneWrenchController>(
+      LaneWrenchController{ControllerKind::cascade, switches_, list_numbers(numbers_)});
 }
 
 }  // namespace quadcore::control

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <optional>
-
-#include "quadcore/control/flat_state.hpp"
-#include "quadcore/control/wrench_controller.hpp"
+#include "cascade_formulas.hpp"
+#include "numbers.hpp"
 
 namespace quadcore::control {
 
@@ -20,27 +18,18 @@ class Cascade final : public WrenchController {
     bool feed_forward, drag, gyroscopic, flat_rates;
   };
   static const Settings<Gains>& settings();
-  static constexpr std::size_t memory_size = 6;
+  static constexpr std::size_t memory_size = size_of<CascadeMemory>;
 
   Cascade(const ModelledVehicle& model, const Gains& gains);
 
-  Feeds feeds() const override {
-    if (!gains_.flat_rates) return Feeds::nothing;
-    return gains_.drag ? Feeds::flat_state_with_drag : Feeds::flat_state;
-  }
+  Feeds feeds() const override;
   Demand demand(const ControllerInput& input, double* memory) const override;
+  std::shared_ptr<const LaneWrenchController> in_lanes(double period) const override;
 
  private:
-  /// Integrals of the position and angle errors.
-  enum : std::size_t { kPosition, kAngles = 3 };
-
-  Vector3d acceleration(const ControllerInput& input, double* memory) const;
-  Vector3d torque(const ControllerInput& input, const std::optional<FlatState>& flat,
-                  const Vector3d& rpy, const Vector3d& wanted_rpy, double* memory) const;
-
   ModelledVehicle model_;
-  Gains gains_;
-  Vector3d outer_p_, outer_i_, outer_d_, inner_p_, inner_i_, inner_d_;
+  ControllerSwitches switches_;
+  CascadeNumbers<double> numbers_;
 };
 
 }  // namespace quadcore::control

@@ -12,7 +12,7 @@
 namespace quadcore::control {
 
 /// Controllers for the lanes.
-enum class ControllerKind { geometric, indi, lqr };
+enum class ControllerKind { cascade, geometric, indi, lqr };
 
 /// Number of values of a struct of numbers.
 template <template <class> class Numbers>
@@ -27,7 +27,7 @@ struct CommandBlock {
   std::size_t rotors, number_rows, state_rows;
   double period;
   bool begins;
-  const double* numbers;    ///< TrackingNumbers, IndiNumbers or LqrNumbers
+  const double* numbers;    ///< CascadeNumbers, TrackingNumbers, IndiNumbers or LqrNumbers
   const double* actuators;  ///< RotorNumbers of each rotor
   const double* measured;   ///< MeasuredNumbers
   const double* wanted;     ///< WantedNumbers

@@ -1,4 +1,5 @@
 #include "actuation_formulas.hpp"
+#include "cascade_formulas.hpp"
 #include "command_block.hpp"
 #include "lanes/mask.hpp"
 #include "lqr_formulas.hpp"
@@ -23,6 +24,11 @@ QUADCORE_LAW DemandNumbers<T> demand_by_kind(const CommandBlock& block, std::siz
                                              const InputNumbers<T>& input, T* memory) {
   const double* const table = block.numbers;
   switch (block.kind) {
+    case ControllerKind::cascade: {
+      const auto& numbers = part_of<CascadeNumbers<T>, T>(table, block.number_rows, part);
+      return demand_by_cascade(CascadeFormulas<T>{block.switches, numbers, input},
+                               *reinterpret_cast<CascadeMemory<T>*>(memory));
+    }
     case ControllerKind::geometric: {
       const auto& numbers = part_of<TrackingNumbers<T>, T>(table, block.number_rows, part);
       return demand_geometrically(TrackingFormulas<T>{block.switches, numbers, input},

@@ -17,6 +17,7 @@ struct WantedNumbers {
   Matrix3<T> R_WF;
   Vec3<T> w_WF_F, dw_WF_F, a_FCcm_W;
   T thrust;
+  T yaw, yaw_rate;
 };
 
 /// A demand on the rotors.

@@ -80,7 +80,9 @@ WantedNumbers<double> FlatTable::numbers(const Reference& wanted, std::size_t co
           vector(FlatRow::w_WF_F, column),
           vector(FlatRow::dw_WF_F, column),
           vector(FlatRow::a_FCcm_W, column),
-          number(FlatRow::thrust, column)};
+          number(FlatRow::thrust, column),
+          wanted.yaw,
+          wanted.yaw_rate};
 }
 
 }  // namespace quadcore::control

@@ -1,7 +1,7 @@
 #include "firmware/crazyflie_pid.hpp"
 
-#include "euler_rates.hpp"
 #include "firmware/units.hpp"
+#include "lanes/turn.hpp"
 
 namespace quadcore::control {
 namespace {
@@ -127,7 +127,7 @@ Demand CrazyfliePid::demand(const ControllerInput& input, double* numbers) const
     memory.waited = 0;
   }
   const double period = input.period;
-  const double yaw_error = degrees_per_radian * wrap_angle(input.wanted.yaw - rpy.z());
+  const double yaw_error = degrees_per_radian * laws::within_half_turn(input.wanted.yaw - rpy.z());
   const double yaw_change = std::remainder(angles.z() - memory.last_yaw, 360);
   memory.last_yaw = angles.z();
   double* const sum = memory.att_sum;
