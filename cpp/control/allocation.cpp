@@ -179,39 +179,37 @@ Allocation::Share Allocation::fit(const Demand& demand, const double* lost, bool
     double thrust, slope;  // at a fraction of 0; change with the fraction
     double at(double share) const { return thrust + share * slope; }
   };
+  struct Bounds {
+    Line lower, upper;
+  };
   const std::vector<Facets>& facets = at_any_yaw ? level_ : facets_;
-  const auto along_normal = [&](const Facets& pair) {
-    return demand.torque_F.x() * pair.normal[1] + demand.torque_F.y() * pair.normal[2];
-  };
-  const auto bound = [&](const Facets& pair, bool upper) {
-    const double lift = pair.normal[0];
-    const double limit = left_of(upper == (lift > 0) ? pair.most : pair.least, lost);
-    return Line{limit / lift, -along_normal(pair) / lift};
-  };
   Share share{1, 0, 0};
+  std::vector<Bounds> bounds;
+  bounds.reserve(facets.size());
   for (const Facets& pair : facets) {
-    if (pair.normal[0] == 0) {  // independent of the thrust
-      const double torque = along_normal(pair);
-      const VectorXd& limit = torque > 0 ? pair.most : pair.least;
-      if (torque != 0) {
-        share.roll_pitch = std::clamp(left_of(limit, lost) / torque, 0.0, share.roll_pitch);
-      }
-      continue;
+    const double lift = pair.normal[0];
+    const double torque =
+        demand.torque_F.x() * pair.normal[1] + demand.torque_F.y() * pair.normal[2];
+    const double least = left_of(pair.least, lost), most = left_of(pair.most, lost);
+    if (lift != 0) {
+      const Line at_least{least / lift, -torque / lift}, at_most{most / lift, -torque / lift};
+      bounds.push_back(lift > 0 ? Bounds{at_least, at_most} : Bounds{at_most, at_least});
+    } else if (torque != 0) {  // independent of the thrust
+      share.roll_pitch = std::clamp((torque > 0 ? most : least) / torque, 0.0, share.roll_pitch);
     }
-    const Line lower = bound(pair, false);
-    for (const Facets& other : facets) {
-      if (other.normal[0] == 0) continue;
-      const Line upper = bound(other, true);
+  }
+  for (const Bounds& one : bounds) {
+    for (const Bounds& other : bounds) {
+      const Line &lower = one.lower, &upper = other.upper;
       if (lower.slope <= upper.slope) continue;
       const double meeting = (upper.thrust - lower.thrust) / (lower.slope - upper.slope);
       share.roll_pitch = std::clamp(meeting, 0.0, share.roll_pitch);
     }
   }
   double least = -infinity, most = infinity;
-  for (const Facets& pair : facets) {
-    if (pair.normal[0] == 0) continue;
-    least = std::max(least, bound(pair, false).at(share.roll_pitch));
-    most = std::min(most, bound(pair, true).at(share.roll_pitch));
+  for (const auto& [lower, upper] : bounds) {
+    least = std::max(least, lower.at(share.roll_pitch));
+    most = std::min(most, upper.at(share.roll_pitch));
   }
   // At a corner the two bounds are equal up to rounding.
   share.thrust = std::max(least, std::min(demand.thrust, most));
