@@ -184,8 +184,8 @@ Allocation::Share Allocation::fit(const Demand& demand, const double* lost, bool
   };
   const std::vector<Facets>& facets = at_any_yaw ? level_ : facets_;
   Share share{1, 0, 0};
-  std::vector<Bounds> bounds;
-  bounds.reserve(facets.size());
+  static thread_local std::vector<Bounds> bounds;  // kept, because steps allocate no memory
+  bounds.clear();
   for (const Facets& pair : facets) {
     const double lift = pair.normal[0];
     const double torque =
