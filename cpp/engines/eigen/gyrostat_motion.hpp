@@ -16,20 +16,34 @@ QUADCORE_LAW std::size_t joint(std::size_t row, std::size_t i) {
   return GyrostatState::joints + rotor_offset(GyrostatState::joint_rows, i) + row * widest_lanes;
 }
 
+/// The frame's part of a state. A step keeps it in registers, because each stage waits for the one
+/// before.
+struct FrameState {
+  Four p_WC, q_WF, v_WCcm_W, w_WF_F;
+
+  QUADCORE_LAW static FrameState load(const double* state) {
+    using At = GyrostatState;
+    return {laws::load<Four>(state + At::position), laws::load<Four>(state + At::orientation),
+            laws::load<Four>(state + At::velocity), laws::load<Four>(state + At::rate)};
+  }
+  QUADCORE_LAW void store(double* state) const {
+    using At = GyrostatState;
+    laws::store(state + At::position, p_WC);
+    laws::store(state + At::orientation, q_WF);
+    laws::store(state + At::velocity, v_WCcm_W);
+    laws::store(state + At::rate, w_WF_F);
+  }
+};
+
 /// Motion of the frame in a state.
-struct FrameOfState {
-  Four q_WF, v_WCcm_W, w_WF_F;
+struct FrameOfState : FrameState {
   laws::Rotation R_WF;
   Four v_WCcm_F;
 
   // Between the stages, the length of the quaternion deviates from 1 by less than the method's
   // error.
-  QUADCORE_LAW explicit FrameOfState(const double* state)
-      : q_WF(laws::load<Four>(state + GyrostatState::orientation)),
-        v_WCcm_W(laws::load<Four>(state + GyrostatState::velocity)),
-        w_WF_F(laws::load<Four>(state + GyrostatState::rate)),
-        R_WF(laws::rotation(q_WF)),
-        v_WCcm_F(R_WF.from * v_WCcm_W) {}
+  QUADCORE_LAW explicit FrameOfState(const FrameState& state)
+      : FrameState(state), R_WF(laws::rotation(q_WF)), v_WCcm_F(R_WF.from * v_WCcm_W) {}
 
   QUADCORE_LAW Four v_WF_F(const GyrostatStep& g) const {
     return v_WCcm_F - laws::cross(w_WF_F, laws::load<Four>(g.p_FCcm_F));
@@ -117,10 +131,10 @@ QUADCORE_LAW void turn(const GyrostatStep& g, const double* state) {
 
 /// Write the motion of a state to the tables that plugins read.
 template <int W>
-QUADCORE_LAW void show(const GyrostatStep& g, const double* state) {
+QUADCORE_LAW void show(const GyrostatStep& g, const FrameState& of_frame, const double* state) {
   using T = laws::Pack<W>;
   if (g.normals_turn) turn<W>(g, state);
-  FrameOfState frame(state);
+  FrameOfState frame(of_frame);
   laws::store(g.frame + FrameNumber::q_WF, frame.q_WF);
   laws::store_vector(g.frame + FrameNumber::R_WF, frame.R_WF.to.x);
   laws::store_vector(g.frame + FrameNumber::R_WF + 3, frame.R_WF.to.y);
@@ -129,8 +143,7 @@ QUADCORE_LAW void show(const GyrostatStep& g, const double* state) {
   laws::store_vector(g.frame + FrameNumber::v_WCcm_F, frame.v_WCcm_F);
   laws::store_vector(g.frame + FrameNumber::v_WF_F, frame.v_WF_F(g));
   laws::store_vector(g.frame + FrameNumber::p_WF,
-                     laws::load<Four>(state + GyrostatState::position) -
-                         frame.R_WF.to * laws::load<Four>(g.p_FCcm_F));
+                     frame.p_WC - frame.R_WF.to * laws::load<Four>(g.p_FCcm_F));
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const RotorsOfState<T> rotors{g, frame, state, i};
     double* motion = g.motion + rotor_offset(MotionRow::count, i);

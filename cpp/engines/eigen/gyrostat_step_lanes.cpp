@@ -26,14 +26,14 @@ __attribute__((noinline)) void evaluate_rest(const GyrostatStep& g, const double
       laws::store(loads + row * widest_lanes, T{});
     }
   });
-  show<W>(g, state);
+  show<W>(g, FrameState::load(state), state);
   g.evaluate_rest(g.engine);
 }
 
 template <int W>
 [[noreturn]] __attribute__((noinline, cold)) void refuse(const GyrostatStep& g,
                                                          const double* state) {
-  show<W>(g, state);
+  show<W>(g, FrameState::load(state), state);
   g.refuse(g.engine);
   __builtin_unreachable();
 }
@@ -99,12 +99,18 @@ QUADCORE_LAW void add_airframe(const GyrostatStep& g, const FrameOfState& frame,
 
 /// Compute the rate of a state with the rotations in the table, and fill the table for the next
 /// stage. `rest` is whether there are loads other than force laws.
+/// \param now  the frame's state, then that of the next stage
+/// \param sum  sum of its rates
 template <int W, Stage stage, bool rest, bool upright>
-QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, const Share& share) {
+QUADCORE_LAW void differentiate(const GyrostatStep& g, double* state, FrameState& now,
+                                FrameState& sum, const Share& share) {
   using T = laws::Pack<W>;
   using Rotors = RotorsOfState<T, upright>;
-  if constexpr (rest) evaluate_rest<W>(g, state);
-  FrameOfState frame(state);
+  if constexpr (rest) {
+    now.store(state);
+    evaluate_rest<W>(g, state);
+  }
+  FrameOfState frame(now);
 
   Four f_F = drag_of_frame<rest>(g, frame);
   Four tau_F = -laws::cross(frame.w_WF_F, laws::load_columns(g.I_C_F) * frame.w_WF_F);
@@ -128,7 +134,10 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
   }
   // Every load is in exactly one of the two sums.
   const Four all = f_F + tau_F;
-  if (!laws::is_finite(all[0] + all[1] + all[2])) refuse<W>(g, state);
+  if (!laws::is_finite(all[0] + all[1] + all[2])) {
+    now.store(state);
+    refuse<W>(g, state);
+  }
 
   // The next stage's angles and their sines do not depend on the sums.
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
@@ -150,23 +159,25 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
     }
     share_out<stage>(g, share, joint(At::joint_rate, i), slope);
   });
-  share_out<stage>(g, share, At::position, frame.v_WCcm_W);
-  share_out<stage>(g, share, At::orientation, laws::quaternion_rate(frame.q_WF, frame.w_WF_F));
-  share_out<stage>(g, share, At::velocity,
-                   g.inverse_mass * (frame.R_WF.to * f_F) + laws::load<Four>(g.gravity_W));
-  share_out<stage>(g, share, At::rate, angular_F);
+  const FrameState begin = FrameState::load(g.state);
+  now.p_WC = share_out<stage>(share, begin.p_WC, sum.p_WC, frame.v_WCcm_W);
+  now.q_WF = share_out<stage>(share, begin.q_WF, sum.q_WF,
+                              laws::quaternion_rate(frame.q_WF, frame.w_WF_F));
+  now.v_WCcm_W =
+      share_out<stage>(share, begin.v_WCcm_W, sum.v_WCcm_W,
+                       g.inverse_mass * (frame.R_WF.to * f_F) + laws::load<Four>(g.gravity_W));
+  now.w_WF_F = share_out<stage>(share, begin.w_WF_F, sum.w_WF_F, angular_F);
 }
 
 template <int W>
-QUADCORE_LAW void normalise(const GyrostatStep& g) {
+QUADCORE_LAW void normalise(const GyrostatStep& g, FrameState& now) {
   using T = laws::Pack<W>;
-  const Four q = laws::load<Four>(g.state + At::orientation);
+  const Four q = now.q_WF;
   const Four squares = q * q;
   const double square = (squares[0] + squares[1]) + (squares[2] + squares[3]);
   // Near 1, 1/sqrt(s) equals (3 - s)/2 within rounding, and s stays near 1 in steps.
   const bool is_near = laws::absolute(square - 1) < 1e-8;
-  laws::store(g.state + At::orientation,
-              __builtin_expect(is_near, 1) ? q * (1.5 - 0.5 * square) : q / __builtin_sqrt(square));
+  now.q_WF = __builtin_expect(is_near, 1) ? q * (1.5 - 0.5 * square) : q / __builtin_sqrt(square);
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     double* angle = g.state + joint(At::joint_angle, i);
     laws::store(angle, laws::within_half_turn(laws::load<T>(angle)));
@@ -177,7 +188,7 @@ QUADCORE_LAW void normalise(const GyrostatStep& g) {
 
 template <int W>
 void show_gyrostat(const GyrostatStep& g, const double* state) {
-  show<W>(g, state);
+  show<W>(g, FrameState::load(state), state);
 }
 
 /// Compiled for each case, because features of few vehicles would cost registers for all.
@@ -186,16 +197,18 @@ QUADCORE_LAW void step(const GyrostatStep& g, double time, double dt) {
   double& shown_time = g.frame[FrameNumber::time];
   shown_time = time;
   if (g.laws_turn) turn<W>(g, g.state);
-  differentiate<W, Stage::first, rest, upright>(g, g.state, {1, dt / 2});
+  FrameState frame = FrameState::load(g.state), sum;
+  differentiate<W, Stage::first, rest, upright>(g, g.state, frame, sum, {1, dt / 2});
   shown_time = time + dt / 2;
   const double reaches[] = {dt / 2, dt};
   for (const double reach : reaches) {
-    differentiate<W, Stage::between, rest, upright>(g, g.stage, {2, reach});
+    differentiate<W, Stage::between, rest, upright>(g, g.stage, frame, sum, {2, reach});
   }
   shown_time = time + dt;
-  differentiate<W, Stage::last, rest, upright>(g, g.stage, {1, dt / 6});
-  normalise<W>(g);
-  show<W>(g, g.state);
+  differentiate<W, Stage::last, rest, upright>(g, g.stage, frame, sum, {1, dt / 6});
+  normalise<W>(g, frame);
+  frame.store(g.state);
+  show<W>(g, frame, g.state);
 }
 
 template <int W>

@@ -21,21 +21,25 @@ struct StageNumbers {
   double* end;          ///< state at the end of the step; may be `begin` or `stage`
 };
 
-/// Shares out the rate of the numbers at a place.
+/// Return the next state of a number that was `begin` at the start of the step and now has the rate
+/// k, which is added to the sum of the rates.
+template <Stage stage, class T>
+QUADCORE_LAW T share_out(const Share& share, T begin, T& sum, T k) {
+  if constexpr (stage == Stage::first) sum = k;
+  if constexpr (stage == Stage::between) sum = sum + share.weight * k;
+  if constexpr (stage == Stage::last) sum = sum + k;
+  return begin + share.reach * (stage == Stage::last ? sum : k);
+}
+
+/// Share out the rate of the numbers at a place.
 template <Stage stage, class T>
 QUADCORE_LAW void share_out(const StageNumbers& numbers, const Share& share, std::size_t place,
                             T k) {
-  T sum = k;
-  if constexpr (stage == Stage::between)
-    sum = laws::load<T>(numbers.sum + place) + share.weight * k;
-  if constexpr (stage == Stage::last) sum = laws::load<T>(numbers.sum + place) + k;
-  const T begin = laws::load<T>(numbers.begin + place);
-  if constexpr (stage == Stage::last) {
-    laws::store(numbers.end + place, begin + share.reach * sum);
-  } else {
-    laws::store(numbers.sum + place, sum);
-    laws::store(numbers.stage + place, begin + share.reach * k);
-  }
+  T sum{};
+  if constexpr (stage != Stage::first) sum = laws::load<T>(numbers.sum + place);
+  const T next = share_out<stage>(share, laws::load<T>(numbers.begin + place), sum, k);
+  if constexpr (stage != Stage::last) laws::store(numbers.sum + place, sum);
+  laws::store((stage == Stage::last ? numbers.end : numbers.stage) + place, next);
 }
 
 }  // namespace quadcore
