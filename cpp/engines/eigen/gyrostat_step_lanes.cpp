@@ -186,7 +186,7 @@ QUADCORE_LAW void normalise(const GyrostatStep& g, FrameState& now) {
 
 }  // namespace
 
-template <int W>
+template <int W, bool has_32_registers>
 void show_gyrostat(const GyrostatStep& g, const double* state) {
   show<W>(g, FrameState::load(state), state);
 }
@@ -211,7 +211,7 @@ QUADCORE_LAW void step(const GyrostatStep& g, double time, double dt) {
   show<W>(g, frame, g.state);
 }
 
-template <int W>
+template <int W, bool has_32_registers>
 void step_gyrostat(const GyrostatStep& g, double time, double dt) {
   if (g.evaluate_rest) {
     step<W, true, false>(g, time, dt);
@@ -222,7 +222,9 @@ void step_gyrostat(const GyrostatStep& g, double time, double dt) {
   }
 }
 
-template void show_gyrostat<QUADCORE_LANES>(const GyrostatStep&, const double*);
-template void step_gyrostat<QUADCORE_LANES>(const GyrostatStep&, double, double);
+template void show_gyrostat<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const GyrostatStep&,
+                                                                       const double*);
+template void step_gyrostat<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const GyrostatStep&, double,
+                                                                       double);
 
 }  // namespace quadcore

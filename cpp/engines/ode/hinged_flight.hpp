@@ -29,22 +29,22 @@ struct FlightLoads {
 /// \name Steps of a vehicle with W rotors at once; W is 1 if some rotors carry others
 /// @{
 /// Compute the geometry of a new state.
-template <int W>
+template <int W, bool has_32_registers = false>
 void read_hinged(const HingedFlight& flight);
 /// Set all forces on the bodies to zero.
-template <int W>
+template <int W, bool has_32_registers = false>
 void clear_hinged(const HingedFlight& flight);
 /// Add loads.
-template <int W>
+template <int W, bool has_32_registers = false>
 void push_hinged(const HingedFlight& flight, const FlightLoads& loads);
 /// Advance by dt [s], with the gyroscopic torque of each body or without. Returns false without a
 /// motion if a hinge requires a correction beyond the maximum.
-template <int W>
+template <int W, bool has_32_registers = false>
 bool advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic);
-template <int W>
+template <int W, bool has_32_registers = false>
 void show_hinged(const HingedFlight& flight, const ShownFlight& shown);
 /// Compute the loads of the hinges in the last step.
-template <int W>
+template <int W, bool has_32_registers = false>
 void find_hinge_loads(const HingedFlight& flight);
 /// @}
 

@@ -38,17 +38,17 @@ QUADCORE_LAW void store_one(double* to, const Vec3<T>& a) {
 
 }  // namespace
 
-template <int W>
+template <int W, bool has_32_registers>
 void read_hinged(const HingedFlight& flight) {
   bodies_of<W>(flight).read();
 }
 
-template <int W>
+template <int W, bool has_32_registers>
 void clear_hinged(const HingedFlight& flight) {
   bodies_of<W>(flight).clear_forces();
 }
 
-template <int W>
+template <int W, bool has_32_registers>
 void push_hinged(const HingedFlight& flight, const FlightLoads& loads) {
   using T = laws::Pack<W>;
   const Bodies<W> bodies = bodies_of<W>(flight);
@@ -64,7 +64,7 @@ void push_hinged(const HingedFlight& flight, const FlightLoads& loads) {
   }
 }
 
-template <int W>
+template <int W, bool has_32_registers>
 bool advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic) {
   Bodies<W> bodies = bodies_of<W>(flight);
   bodies.turn_inertias(gyroscopic);
@@ -74,7 +74,7 @@ bool advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic) {
   return true;
 }
 
-template <int W>
+template <int W, bool has_32_registers>
 void show_hinged(const HingedFlight& flight, const ShownFlight& shown) {
   using T = laws::Pack<W>;
   const Bodies<W> bodies = bodies_of<W>(flight);
@@ -110,7 +110,7 @@ void show_hinged(const HingedFlight& flight, const ShownFlight& shown) {
   store_one(shown.frame + FrameNumber::v_WCcm_F, center.v_WCcm_F);
 }
 
-template <int W>
+template <int W, bool has_32_registers>
 void find_hinge_loads(const HingedFlight& flight) {
   const Bodies<W> bodies = bodies_of<W>(flight);
   for (std::size_t i = 1; i < bodies.size(); ++i) {
@@ -118,11 +118,14 @@ void find_hinge_loads(const HingedFlight& flight) {
   }
 }
 
-template void read_hinged<QUADCORE_LANES>(const HingedFlight&);
-template void clear_hinged<QUADCORE_LANES>(const HingedFlight&);
-template void push_hinged<QUADCORE_LANES>(const HingedFlight&, const FlightLoads&);
-template bool advance_hinged<QUADCORE_LANES>(const HingedFlight&, double, bool);
-template void show_hinged<QUADCORE_LANES>(const HingedFlight&, const ShownFlight&);
-template void find_hinge_loads<QUADCORE_LANES>(const HingedFlight&);
+template void read_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&);
+template void clear_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&);
+template void push_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&,
+                                                                     const FlightLoads&);
+template bool advance_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&, double,
+                                                                        bool);
+template void show_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&,
+                                                                     const ShownFlight&);
+template void find_hinge_loads<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&);
 
 }  // namespace quadcore

@@ -6,7 +6,6 @@
 #include "body_state.hpp"
 #include "body_work.hpp"
 #include "ode_math.hpp"
-#include "quadcore/lane_width.hpp"
 
 namespace quadcore {
 namespace {
@@ -54,7 +53,7 @@ HingedVehicle::HingedVehicle(const Bodies& bodies, const World& world, double ma
               state_.data(),
               work_.data(),
               soft_.empty() ? nullptr : soft_.data()},
-      calls_(calls(model_.is_star() ? lane_width(rotors_.size()) : 1)) {
+      calls_(calls(model_.is_star() ? rotor_code(rotors_.size()) : RotorCode{1, false})) {
   const Model& model = bodies.model;
   for (const Joint& joint : model.joints) {
     R_PC_at_zero_.push_back(joint.pose.rotation().toRotationMatrix());
@@ -67,26 +66,28 @@ HingedVehicle::HingedVehicle(const Bodies& bodies, const World& world, double ma
   }
 }
 
-HingedVehicle::Calls HingedVehicle::calls(int width) {
-  const auto of = [](auto lanes) -> Calls {
+HingedVehicle::Calls HingedVehicle::calls(const RotorCode& code) {
+  const auto of = [](auto lanes, auto registers) -> Calls {
     constexpr int W = lanes();
+    constexpr bool has_32 = registers();
     return {W,
-            &read_hinged<W>,
-            &clear_hinged<W>,
-            &push_hinged<W>,
-            &advance_hinged<W>,
-            &show_hinged<W>,
-            &find_hinge_loads<W>};
+            &read_hinged<W, has_32>,
+            &clear_hinged<W, has_32>,
+            &push_hinged<W, has_32>,
+            &advance_hinged<W, has_32>,
+            &show_hinged<W, has_32>,
+            &find_hinge_loads<W, has_32>};
   };
-  switch (width) {
+  if (code.has_32_registers) return of(std::integral_constant<int, 4>(), std::true_type());
+  switch (code.width) {
     case 8:
-      return of(std::integral_constant<int, 8>());
+      return of(std::integral_constant<int, 8>(), std::false_type());
     case 4:
-      return of(std::integral_constant<int, 4>());
+      return of(std::integral_constant<int, 4>(), std::false_type());
     case 2:
-      return of(std::integral_constant<int, 2>());
+      return of(std::integral_constant<int, 2>(), std::false_type());
     default:
-      return of(std::integral_constant<int, 1>());
+      return of(std::integral_constant<int, 1>(), std::false_type());
   }
 }
 

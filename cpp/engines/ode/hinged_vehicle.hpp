@@ -7,6 +7,7 @@
 #include "gazebo_step.hpp"
 #include "hinged_flight.hpp"
 #include "hinged_model.hpp"
+#include "quadcore/lane_width.hpp"
 #include "quadcore/plugin/kinematics.hpp"
 #include "quadcore/plugin/loads.hpp"
 
@@ -61,7 +62,7 @@ class HingedVehicle {
     void (*show)(const HingedFlight&, const ShownFlight&);
     void (*find_hinge_loads)(const HingedFlight&);
   };
-  static Calls calls(int width);
+  static Calls calls(const RotorCode& code);
 
   GazeboStep::Multipliers multipliers(std::size_t hinge) const;
   double* state_of(std::size_t body) const;

@@ -2,7 +2,7 @@
 
 namespace quadcore::aerodynamic {
 
-template <int W>
+template <int W, bool has_32_registers>
 void add_rotor_forces(const RotorForces& law, const ShownMotion& shown) {
   using T = laws::Pack<W>;
   laws::for_each_pack<W>(shown.rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
@@ -19,6 +19,7 @@ void add_rotor_forces(const RotorForces& law, const ShownMotion& shown) {
   });
 }
 
-template void add_rotor_forces<QUADCORE_LANES>(const RotorForces&, const ShownMotion&);
+template void add_rotor_forces<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const RotorForces&,
+                                                                          const ShownMotion&);
 
 }  // namespace quadcore::aerodynamic

@@ -54,7 +54,7 @@ struct ShownPack {
 };
 
 /// Add forces and reactions of all rotors to their loads, W rotors at once.
-template <int W>
+template <int W, bool has_32_registers = false>
 void add_rotor_forces(const RotorForces& law, const ShownMotion& shown);
 
 }  // namespace quadcore::aerodynamic

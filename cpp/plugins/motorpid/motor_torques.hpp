@@ -6,7 +6,7 @@
 namespace quadcore::motorpid {
 
 /// Add the torques of all rotors to their loads, W rotors at once.
-template <int W>
+template <int W, bool has_32_registers = false>
 void add_motor_torques(const MotorTorques& law, const RotorLanes& rotors);
 
 }  // namespace quadcore::motorpid

@@ -3,7 +3,7 @@
 
 namespace quadcore::motorpid {
 
-template <int W>
+template <int W, bool has_32_registers>
 void add_motor_torques(const MotorTorques& law, const RotorLanes& rotors) {
   using T = laws::Pack<W>;
   laws::for_each_pack<W>(rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
@@ -15,6 +15,7 @@ void add_motor_torques(const MotorTorques& law, const RotorLanes& rotors) {
   });
 }
 
-template void add_motor_torques<QUADCORE_LANES>(const MotorTorques&, const RotorLanes&);
+template void add_motor_torques<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const MotorTorques&,
+                                                                           const RotorLanes&);
 
 }  // namespace quadcore::motorpid

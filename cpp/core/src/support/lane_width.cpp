@@ -13,7 +13,7 @@ namespace {
 int widest() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f")) return 8;
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return 8;
   if (__builtin_cpu_supports("avx2")) return 4;
 #endif
   return 2;
@@ -31,12 +31,12 @@ int requested_width() {
 
 }  // namespace
 
-int lane_width(std::size_t rotors) {
+RotorCode rotor_code(std::size_t rotors) {
   static const int most = widest();
-  if (const int width = requested_width()) return width;
+  if (const int width = requested_width()) return {width, false};
   int width = 2;
   while (width < most && static_cast<std::size_t>(width) < rotors) width *= 2;
-  return width;
+  return {width, width == 4 && most == 8};
 }
 
 }  // namespace quadcore
