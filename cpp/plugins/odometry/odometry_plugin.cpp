@@ -42,8 +42,9 @@ class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, k
   }
 
   void sense(const Sample& sample, PluginState state) const override {
+    if (!seed_) return MountedSensor::sense(sample, state);
     Sample seeded = sample;
-    seeded.seed = seed_.value_or(sample.seed);
+    seeded.seed = *seed_;
     MountedSensor::sense(seeded, state);
   }
 
@@ -54,28 +55,32 @@ class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, k
   }
 
  private:
+  /// Return the true odometry. It is initialised, because assigned vectors would be stored by
+  /// single numbers and stall when they are read in pairs.
+  messages::Odometry truth(const Kinematics& k) const {
+    return {k.p_WF,
+            k.q_WF,
+            twist_in_body_ ? k.v_WF_F : k.R_WF * k.v_WF_F,
+            k.w_WF_F,
+            variances_.position_variance,
+            variances_.orientation_variance,
+            variances_.linear_velocity_variance,
+            variances_.angular_velocity_variance};
+  }
+
   static VectorErrors read_errors(const Parameters& p, const std::string& quantity,
                                   bool has_resolution) {
     return {p.number(quantity + "Noise"), p.number(quantity + "Walk"),
             has_resolution ? p.number(quantity + "Resolution") : 0};
   }
 
-  messages::Odometry truth(const Kinematics& k) const {
-    messages::Odometry message = variances_;
-    message.position = k.p_WF;
-    message.orientation = k.q_WF;
-    message.linear_velocity = twist_in_body_ ? k.v_WF_F : k.R_WF * k.v_WF_F;
-    message.angular_velocity = k.w_WF_F;
-    return message;
-  }
-
   std::optional<messages::Odometry> measure(const Sample& sample,
                                             PluginState memory) const override {
-    messages::Odometry message = truth(sample.kinematics);
+    std::optional<messages::Odometry> message = truth(sample.kinematics);
     if (is_perfect_) return message;
     const double since = sample.jumped ? 0 : sample.time - memory[kTime];
     memory[kTime] = sample.time;
-    errors_.apply(message, since, sample.seed, memory[kDraws], &memory[kBiases]);
+    errors_.apply(*message, since, sample.seed, memory[kDraws], &memory[kBiases]);
     return message;
   }
 
