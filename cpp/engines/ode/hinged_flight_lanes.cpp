@@ -1,5 +1,6 @@
 #include "hinged_flight.hpp"
 #include "hinged_motion.hpp"
+#include "lanes/four.hpp"
 #include "laws/rotors.hpp"
 
 namespace quadcore {
@@ -30,9 +31,9 @@ QUADCORE_LAW std::size_t joint_of(const HingedFlight& flight, std::size_t i) {
 template <class T>
 QUADCORE_LAW void store_one(double* to, const Vec3<T>& a) {
   if constexpr (laws::lanes_of<T> == 1) {
-    to[0] = a.x, to[1] = a.y, to[2] = a.z;
+    laws::store_vector(to, laws::Four{a.x, a.y, a.z, 0});
   } else {
-    to[0] = a.x[0], to[1] = a.y[0], to[2] = a.z[0];
+    laws::store_vector(to, laws::Four{a.x[0], a.y[0], a.z[0], 0});
   }
 }
 

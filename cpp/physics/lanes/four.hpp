@@ -39,9 +39,10 @@ QUADCORE_LAW Four first_three(const Four& a) {
   return from_bits<Four>(bits(a) & BitsOf<Four>{-1, -1, -1, 0});
 }
 
+/// Store a vector as a pair and a number, like Eigen reads it; numbers that are stored one by one
+/// stall when they are read in pairs.
 QUADCORE_LAW void store_vector(double* to, const Four& a) {
-  to[0] = a[0];
-  to[1] = a[1];
+  store(to, Pack<2>{a[0], a[1]});
   to[2] = a[2];
 }
 

@@ -32,8 +32,11 @@ bool Loads::all_finite() const {
   for (std::size_t i = 0; i < rotors_.rotors(); i += widest_lanes) {
     const double* const block = rotors_.data() + rotor_offset(LoadRow::count, i);
     const std::size_t lanes = std::min(rotors_.rotors() - i, widest_lanes);
-    for (std::size_t row = 0; row < LoadRow::count; ++row) {
-      for (std::size_t j = 0; j < lanes; ++j) sum += block[row * widest_lanes + j];
+    for (std::size_t j = 0; j < lanes; ++j) {
+      double of_rotor = 0;  // apart, so that the rotors' additions do not wait for each other
+      for (std::size_t row = 0; row < LoadRow::count; ++row)
+        of_rotor += block[row * widest_lanes + j];
+      sum += of_rotor;
     }
   }
   for (const auto& rate : rates_) {
