@@ -11,6 +11,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 from flights import BUSY, ENGINES, HOVER, MANOEUVRE, bits, hold_height, quadrotor
+from hooked import CHAPTER2, G, with_plugins
+from vehicles import MOTOR, ODD, SKEW, plugin, start, vehicle
 
 import quadcore as qc
 
@@ -169,3 +171,36 @@ def test_a_thousand_simulations_leave_no_memory_behind(toy):
     come_and_go(100)
     # A leak of one kilobyte per simulation grows each time; a new page of the allocator does not.
     assert min(measure_growth() for _ in range(3)) < 300 * 1000
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("drag_model", ["appendix", "chapter2"])
+def test_plugins_act_as_if_updated_in_every_step(engine, drag_model, hangar):
+    air = {**CHAPTER2, "dragModel": drag_model}
+    alone = with_plugins(
+        vehicle(ODD, inertia=SKEW, air=air), plugin("motorpid", {**MOTOR, "maxVelocity": 460})
+    )
+    updated = with_plugins(alone, plugin("reference", {"shape": "hover"}))  # in every step
+    flights = []
+    for urdf in (alone, updated):
+        simulation = hangar(urdf, G, engine=engine)
+        start(simulation, orientation=(1, 0, 0, 0.7), angular_velocity=(3, 0, 0))
+        numbers = []
+        for step in range(120):
+            if step % 40 == 10:
+                simulation.command([400 + step, -300, 461, -100])
+            if step == 60:
+                simulation.publish("effectiveness", [0.5, 1, 1, 0])
+            if step == 75:
+                simulation.publish("power", [1, 0.8, 0, 1])
+            if step == 90:
+                simulation.restore(simulation.snapshot())
+            simulation.step(1 + step % 3)
+            state = simulation.state
+            numbers += [*state.position, *state.orientation, *state.rotor_velocity]
+            numbers.append(simulation.topic("saturation")["steps"])
+        flights.append((numbers, simulation.warnings))
+    assert flights[0] == flights[1]
+    assert numbers[-1] > 0 and any("tilts" in line for line in simulation.warnings) == (
+        drag_model == "appendix"
+    )

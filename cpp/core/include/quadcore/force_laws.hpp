@@ -10,7 +10,7 @@
 namespace quadcore QUADCORE_EXPORT {
 
 /// Bounds of the motion within which a plugin's update() has no effect, unless it has unread
-/// messages.
+/// messages or published one in the last update().
 struct Quiet {
   double fastest =
       std::numeric_limits<double>::infinity();  ///< upper limit of all joint rates [rad/s]

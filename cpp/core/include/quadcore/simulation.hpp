@@ -196,6 +196,8 @@ class Simulation : private ForceField {
   /// Write what plugins of other vehicles may see.
   void show_to_others(OtherVehicle& seen);
   void observe(const OtherVehicles& others);
+  /// Return whether no plugin's update() has an effect now.
+  bool is_quiet() const;
   void begin_step();
   void end_step();
   void begin();  ///< runs the sensors at the start of the motion

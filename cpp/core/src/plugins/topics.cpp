@@ -134,6 +134,14 @@ void Topics::refuse_second(const std::string& who, const Topic& topic) const {
                    " already writes. Keep one of the two.");
 }
 
+void Topics::note_updates(const std::vector<bool>& updating_plugins) {
+  for (Topic& topic : topics_) {
+    topic.concerns_updates =
+        !topic.readers.empty() ||
+        (topic.writer != the_caller && updating_plugins[static_cast<std::size_t>(topic.writer)]);
+  }
+}
+
 std::vector<Message> Topics::messages() const { return {topics_.begin(), topics_.end()}; }
 
 void Topics::check(const std::vector<Message>& messages) const {
@@ -146,6 +154,7 @@ void Topics::check(const std::vector<Message>& messages) const {
 }
 
 void Topics::restore(const std::vector<Message>& messages) {
+  has_news_ = true;
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     Topic& topic = topics_[i];
     static_cast<Message&>(topic) = messages[i];

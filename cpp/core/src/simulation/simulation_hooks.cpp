@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "flight_checks.hpp"
@@ -8,6 +9,25 @@
 #include "quadcore/text.hpp"
 
 namespace quadcore {
+namespace {
+
+/// Return whether a motion is within the bounds.
+bool holds(const Quiet& quiet, const Kinematics& motion) {
+  const auto is_lifted = [](const double* has_said) { return has_said && *has_said != 0; };
+  const RotorMotions& rotors = motion.rotors;
+  if (std::isfinite(quiet.fastest) && !is_lifted(quiet.has_said_fast) &&
+      !rotors.slower_than(quiet.fastest)) {
+    return false;
+  }
+  if (!quiet.no_tilt || is_lifted(quiet.has_said_tilt)) return true;
+  const Vector3d up_F = motion.R_WF.row(2);
+  for (std::size_t i = 0; i < rotors.size(); ++i) {
+    if (!(up_F.dot(rotors.vector(MotionRow::normal, i)) >= 0)) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 void Simulation::note_hooks() {
   for (const std::size_t i : topics_.settle()) {
@@ -17,13 +37,16 @@ void Simulation::note_hooks() {
     if (hooks.update) with_.update.push_back(&p);
     if (hooks.sense) with_.sense.push_back(&p);
   }
+  std::vector<bool> updating;
   for (const LoadedPlugin& p : plugins_) {
     const Hooks& hooks = p.descriptor->create.hooks;
+    updating.push_back(hooks.update);
     if (hooks.forces) with_.forces.push_back(&p);
     if (hooks.forces && !hooks.laws) with_.forces_without_laws.push_back(&p);
     if (hooks.air) with_.air.push_back(&p);
     if (hooks.carried) with_.carried.push_back(&p);
   }
+  topics_.note_updates(updating);
   windy_ = !world_.wind_W.isZero(0) || !with_.air.empty();
 }
 
@@ -158,7 +181,15 @@ void Simulation::sense(bool jumped) {
   });
 }
 
+bool Simulation::is_quiet() const {
+  if (!laws_.all_quiet || topics_.has_news()) return false;
+  const Kinematics& motion = engine_->kinematics();
+  return std::all_of(laws_.quiet.begin(), laws_.quiet.end(),
+                     [&](const Quiet& quiet) { return holds(quiet, motion); });
+}
+
 void Simulation::update() {
+  topics_.forget_news();
   sample(with_.update, false, [](const Plugin& plugin, const Sample& sample, PluginState state) {
     plugin.update(sample, state);
   });

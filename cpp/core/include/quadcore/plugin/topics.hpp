@@ -27,6 +27,7 @@ struct Topic : Message {
   MessageKind kind;               ///< meaning of its values
   int writer = the_caller;        ///< index of a plugin, or the_caller
   std::vector<int> readers = {};  ///< indices of plugins
+  bool concerns_updates = false;  ///< whether an update() may read or write it
 };
 
 /// The topics of one simulation. A plugin declares in its constructor which topics it publishes and
@@ -67,6 +68,7 @@ class Topics {
     if (topic.writer != writer_) refuse_writer(topic);
     topic.stamp = time;
     topic.count += 1;
+    has_news_ |= topic.concerns_updates;
     return topic.values.data();
   }
   /// Publish a message. Throws InputError if another writer owns the topic.
@@ -99,6 +101,12 @@ class Topics {
   std::vector<std::size_t> settle();
   /// Set the writer of the following publish() calls.
   void write_as(int writer) { writer_ = writer; }
+  /// Note which topics may change what an update() does: those with readers, and those that a
+  /// plugin with an update() writes.
+  void note_updates(const std::vector<bool>& updating_plugins);
+  /// Return whether one of these topics has changed since the last call of forget_news().
+  bool has_news() const { return has_news_; }
+  void forget_news() { has_news_ = false; }
   /// Begin a sample: late readers see the values of this moment.
   void begin_sample() {
     for (const auto& [copy, original] : late_) {
@@ -144,6 +152,7 @@ class Topics {
   std::vector<Participant> plugins_;
   std::vector<Declaration> declarations_;
   int writer_ = the_caller;
+  bool has_news_ = true;
 };
 
 }  // namespace quadcore
