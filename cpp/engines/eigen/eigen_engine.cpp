@@ -157,10 +157,7 @@ GyrostatStep EigenEngine::view() {
   g.frame_torque_F = loads_.on_frame().torque_F.data();
   g.given_rates = nullptr;
   g.laws_turn = false;
-  g.rotor_forces = {};
-  g.frame_drags = {};
-  g.airframes = {};
-  g.motor_torques = {};
+  g.laws = {};
   g.evaluate_rest = nullptr;
   g.refuse = [](void* engine) { static_cast<EigenEngine*>(engine)->refuse(); };
   g.engine = this;
@@ -169,16 +166,12 @@ GyrostatStep EigenEngine::view() {
 
 void EigenEngine::step(double time, double dt, const ForceField& forces) {
   forces_ = &forces;
-  const auto put = [](const auto& from, auto& to) { to = {from.data(), from.size()}; };
   const ForceLaws& force_laws = forces.laws();
-  put(force_laws.rotor_forces, step_.rotor_forces);
+  step_.laws = views_of(force_laws);
   step_.laws_turn = step_.normals_turn;
   for (const RotorForces& law : force_laws.rotor_forces) {
     step_.laws_turn |= (law.acting & laws::in_link_axes) != 0;
   }
-  put(force_laws.frame_drags, step_.frame_drags);
-  put(force_laws.airframes, step_.airframes);
-  put(force_laws.motor_torques, step_.motor_torques);
   step_.evaluate_rest = nullptr;
   if (!force_laws.complete) {
     step_.evaluate_rest = [](void* engine) { static_cast<EigenEngine*>(engine)->evaluate_rest(); };

@@ -2,8 +2,7 @@
 
 #include <cstddef>
 
-#include "lanes/pack.hpp"
-#include "quadcore/lane_laws.hpp"
+#include "laws/law_views.hpp"
 #include "quadcore/plugin/rotor_layout.hpp"
 
 namespace quadcore {
@@ -43,23 +42,6 @@ struct RotorConstant {
   };
 };
 
-/// A list of force laws of one kind.
-template <class Law>
-struct Laws {
-  const Law* first;
-  std::size_t count;
-
-  /// Call work with each law. Most vehicles have one, which stays in registers without a loop.
-  template <class Work>
-  QUADCORE_LAW void for_each(const Work& work) const {
-    if (__builtin_expect(count == 1, 1)) {
-      work(*first);
-    } else {
-      for (std::size_t i = 0; i < count; ++i) work(first[i]);
-    }
-  }
-};
-
 /// All data that a step of the gyrostat reads and writes; matrices are stored by columns. The
 /// equations are in cpp/physics/laws/gyrostat.hpp.
 struct GyrostatStep {
@@ -82,10 +64,7 @@ struct GyrostatStep {
   const double* given_rates;  ///< table of GivenRateRow; null while no rate is prescribed
 
   bool laws_turn;  ///< whether some force law or normal requires the rotations
-  Laws<RotorForces> rotor_forces;
-  Laws<FrameDrag> frame_drags;
-  Laws<AirframeLaws> airframes;
-  Laws<MotorTorques> motor_torques;
+  LawViews laws;
   /// Evaluates everything except the force laws in the present motion: clears the frame's loads and
   /// adds to them and to the rotors' loads. Null if there is nothing else and no wind.
   void (*evaluate_rest)(void* engine);

@@ -49,10 +49,10 @@ QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const Rotors& r
     loads.reaction_F = laws::load3<T>(rows + LoadRow::reaction * widest_lanes);
     loads.joint_torque = laws::load<T>(rows + LoadRow::joint_torque * widest_lanes);
   }
-  g.rotor_forces.for_each([&](const RotorForces& law) QUADCORE_INLINED {
+  g.laws.rotor_forces.for_each([&](const RotorForces& law) QUADCORE_INLINED {
     laws::add_rotor_forces(laws::laws_of_rotors<T>(law, rotors.i), rotors, loads);
   });
-  g.motor_torques.for_each([&](const MotorTorques& law) QUADCORE_INLINED {
+  g.laws.motor_torques.for_each([&](const MotorTorques& law) QUADCORE_INLINED {
     loads.joint_torque = loads.joint_torque + laws::motor_torque<T>(law, rotors.i, rotors.rate());
   });
   loads.joint_torque = loads.joint_torque - rotors.constant(RotorConstant::damping) * rotors.rate();
@@ -68,12 +68,12 @@ QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const Rotors& r
 template <bool rest>
 QUADCORE_LAW Four drag_of_frame(const GyrostatStep& g, const FrameOfState& frame) {
   Four sum{};
-  if (g.frame_drags.count == 0) return sum;
+  if (g.laws.frame_drags.count == 0) return sum;
   Four v_ACcm_F = frame.v_WCcm_F;
   if constexpr (rest) v_ACcm_F = v_ACcm_F - laws::load_vector(g.frame + FrameNumber::v_WA_F);
   const Four squares = v_ACcm_F * v_ACcm_F;
   const double speed = __builtin_sqrt(squares[0] + (squares[1] + squares[2]));
-  g.frame_drags.for_each([&](const FrameDrag& law) QUADCORE_INLINED {
+  g.laws.frame_drags.for_each([&](const FrameDrag& law) QUADCORE_INLINED {
     sum = sum + laws::parasitic_drag(v_ACcm_F, speed, law.coefficient);
   });
   return sum;
@@ -85,12 +85,12 @@ QUADCORE_LAW Four four(const Vec3<double>& a) { return Four{a.x, a.y, a.z, 0}; }
 template <bool rest>
 QUADCORE_LAW void add_airframe(const GyrostatStep& g, const FrameOfState& frame, Four& f_F,
                                Four& tau_F) {
-  if (g.airframes.count == 0) return;
+  if (g.laws.airframes.count == 0) return;
   Four v_ACcm_F = frame.v_WCcm_F;
   if constexpr (rest) v_ACcm_F = v_ACcm_F - laws::load_vector(g.frame + FrameNumber::v_WA_F);
   const Vec3<double> V_F{v_ACcm_F[0], v_ACcm_F[1], v_ACcm_F[2]};
   const Vec3<double> w_F{frame.w_WF_F[0], frame.w_WF_F[1], frame.w_WF_F[2]};
-  g.airframes.for_each([&](const AirframeLaws& law) QUADCORE_INLINED {
+  g.laws.airframes.for_each([&](const AirframeLaws& law) QUADCORE_INLINED {
     const auto k = [&](std::size_t row) QUADCORE_INLINED { return law.coefficients[row]; };
     f_F = f_F + four(laws::airframe_force(k, V_F));
     tau_F = tau_F + four(laws::airframe_torque(k, V_F, w_F));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hinged_tree.hpp"
+#include "laws/law_views.hpp"
 
 namespace quadcore {
 
@@ -37,6 +38,10 @@ void clear_hinged(const HingedFlight& flight);
 /// Add loads.
 template <int W, bool has_32_registers = false>
 void push_hinged(const HingedFlight& flight, const FlightLoads& loads);
+/// Set the forces on the bodies to those of force laws in the shown motion, without wind. Returns
+/// false if they are not finite.
+template <int W, bool has_32_registers = false>
+bool push_hinged_laws(const HingedFlight& flight, const LawViews& views, const ShownFlight& shown);
 /// Advance by dt [s], with the gyroscopic torque of each body or without. Returns false without a
 /// motion if a hinge requires a correction beyond the maximum.
 template <int W, bool has_32_registers = false>

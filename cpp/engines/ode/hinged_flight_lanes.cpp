@@ -1,7 +1,9 @@
 #include "hinged_flight.hpp"
 #include "hinged_motion.hpp"
 #include "lanes/four.hpp"
-#include "laws/rotors.hpp"
+#include "laws/airframe.hpp"
+#include "laws/motor_torque.hpp"
+#include "laws/shown_motion.hpp"
 
 namespace quadcore {
 namespace {
@@ -37,6 +39,31 @@ QUADCORE_LAW void store_one(double* to, const Vec3<T>& a) {
   }
 }
 
+/// Wrench of the air on the frame, about its origin.
+struct WrenchOfAir {
+  Vec3<double> force_F{0, 0, 0}, torque_F{0, 0, 0};
+};
+
+QUADCORE_LAW WrenchOfAir wrench_of_air(const LawViews& views, const double* shown_frame) {
+  const auto shown = [&](std::size_t number)
+                         QUADCORE_INLINED { return laws::vec(shown_frame + number); };
+  const Vec3<double> V_F = shown(FrameNumber::v_WCcm_F), p_FCcm_F = shown(FrameNumber::p_FCcm_F);
+  WrenchOfAir sum;
+  const auto add = [&](const Vec3<double>& f_F) QUADCORE_INLINED {
+    sum.force_F = sum.force_F + f_F;
+    sum.torque_F = sum.torque_F + laws::cross(p_FCcm_F, f_F);
+  };
+  views.frame_drags.for_each([&](const FrameDrag& law) QUADCORE_INLINED {
+    add(laws::parasitic_drag(V_F, __builtin_sqrt(laws::dot(V_F, V_F)), law.coefficient));
+  });
+  views.airframes.for_each([&](const AirframeLaws& law) QUADCORE_INLINED {
+    const auto k = [&](std::size_t row) QUADCORE_INLINED { return law.coefficients[row]; };
+    add(laws::airframe_force(k, V_F));
+    sum.torque_F = sum.torque_F + laws::airframe_torque(k, V_F, shown(FrameNumber::w_WF_F));
+  });
+  return sum;
+}
+
 }  // namespace
 
 template <int W, bool has_32_registers>
@@ -63,6 +90,38 @@ void push_hinged(const HingedFlight& flight, const FlightLoads& loads) {
                laws::load<T>(rows + LoadRow::joint_torque * widest_lanes),
                bodies.joint_rate(joint + 1));
   }
+}
+
+template <int W, bool has_32_registers>
+bool push_hinged_laws(const HingedFlight& flight, const LawViews& views, const ShownFlight& shown) {
+  using T = laws::Pack<W>;
+  Bodies<W> bodies = bodies_of<W>(flight);
+  bodies.clear_forces();
+  const HingedFrame<T> frame(bodies);
+  const WrenchOfAir air = wrench_of_air(views, shown.frame);
+  const laws::ShownMotion motion{{shown.motion, nullptr, flight.rotors, true}, shown.frame};
+  laws::Four reaction_F{}, rest{};  // of all rotors; `rest` shows only whether it is finite
+  for (std::size_t i = 0; i < packs_of_rotors<W>(flight); ++i) {
+    const std::size_t joint = joint_of<W>(flight, i);
+    const T rate = bodies.joint_rate(joint + 1);
+    const Vec3<T> none{T{}, T{}, T{}};
+    laws::RotorLoads<T> loads{none, none, T{}};
+    views.rotor_forces.for_each([&](const RotorForces& law) QUADCORE_INLINED {
+      laws::add_rotor_forces<T>(law, motion, i * W, loads);
+    });
+    views.motor_torques.for_each([&](const MotorTorques& law) QUADCORE_INLINED {
+      loads.joint_torque = loads.joint_torque + laws::motor_torque<T>(law, i * W, rate);
+    });
+    laws::add_in_order(reaction_F, loads.reaction_F);
+    const Vec3<T>& f_F = loads.f_F;
+    laws::add_in_order(rest, Vec3<T>{f_F.x + f_F.y + f_F.z, loads.joint_torque, T{}});
+    push_rotor(bodies, frame, joint, f_F, loads.joint_torque, rate);
+  }
+  const Vec3<double> tau_F =
+      air.torque_F + Vec3<double>{reaction_F[0], reaction_F[1], reaction_F[2]};
+  push_frame(bodies, frame, laws::broadcast<T>(air.force_F), laws::broadcast<T>(tau_F));
+  return laws::is_finite(air.force_F.x + air.force_F.y + air.force_F.z + tau_F.x + tau_F.y +
+                         tau_F.z + rest[0] + rest[1]);
 }
 
 template <int W, bool has_32_registers>
@@ -123,6 +182,9 @@ template void read_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const Hinge
 template void clear_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&);
 template void push_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&,
                                                                      const FlightLoads&);
+template bool push_hinged_laws<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&,
+                                                                          const LawViews&,
+                                                                          const ShownFlight&);
 template bool advance_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&, double,
                                                                         bool);
 template void show_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&,

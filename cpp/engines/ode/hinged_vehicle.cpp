@@ -74,6 +74,7 @@ HingedVehicle::Calls HingedVehicle::calls(const RotorCode& code) {
             &read_hinged<W, has_32>,
             &clear_hinged<W, has_32>,
             &push_hinged<W, has_32>,
+            &push_hinged_laws<W, has_32>,
             &advance_hinged<W, has_32>,
             &show_hinged<W, has_32>,
             &find_hinge_loads<W, has_32>};
@@ -154,6 +155,10 @@ void HingedVehicle::push(const Loads& loads) {
   const Wrench frame = loads.frame();
   calls_.clear(flight_);
   calls_.push(flight_, {frame.force_F.data(), frame.torque_F.data(), loads.rotors().data()});
+}
+
+bool HingedVehicle::push(const LawViews& laws, Kinematics& shown) {
+  return calls_.push_laws(flight_, laws, {shown.numbers(), shown.rotors.data()});
 }
 
 void HingedVehicle::show(Kinematics& k) const {

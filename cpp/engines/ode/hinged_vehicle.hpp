@@ -28,6 +28,9 @@ class HingedVehicle {
 
   /// Replace all forces on the vehicle by loads; joint damping is added automatically.
   void push(const Loads& loads);
+  /// Set the forces on the bodies to those of laws in the motion that was shown. Returns false if
+  /// they are not finite.
+  bool push(const LawViews& laws, Kinematics& shown);
   /// Advance by dt, with the gyroscopic torque of each body or without. Returns false without a
   /// motion if a hinge requires a correction beyond the maximum.
   bool advance(double dt, bool gyroscopic) { return calls_.advance(flight_, dt, gyroscopic); }
@@ -58,6 +61,7 @@ class HingedVehicle {
     void (*read)(const HingedFlight&);
     void (*clear)(const HingedFlight&);
     void (*push)(const HingedFlight&, const FlightLoads&);
+    bool (*push_laws)(const HingedFlight&, const LawViews&, const ShownFlight&);
     bool (*advance)(const HingedFlight&, double, bool);
     void (*show)(const HingedFlight&, const ShownFlight&);
     void (*find_hinge_loads)(const HingedFlight&);

@@ -166,8 +166,22 @@ void OdeEngine::expect_contact() {
 }
 
 void OdeEngine::step(double time, double dt, const ForceField& forces) {
+  if (float_by_laws(dt, forces.laws())) return;
   evaluate(time, forces);
   move(dt, false);
+}
+
+/// Take a step in flight with laws that the lanes evaluate themselves. Returns false without a
+/// motion if there are other forces, or if the step requires more than that.
+bool OdeEngine::float_by_laws(double dt, const ForceLaws& laws) {
+  // The order of several laws on the frame is that of their plugins.
+  if (!laws.complete || laws.frame_drags.size() > 1 || laws.airframes.size() > 1) return false;
+  if (!is_afloat(dt) || !hinged_.push(views_of(laws), kinematics_)) return false;
+  if (!hinged_.advance(dt, true)) return false;
+  behind_ = true;
+  step_free(dt);
+  hinged_.show(kinematics_);
+  return true;
 }
 
 void OdeEngine::evaluate(double time, const ForceField& forces) {

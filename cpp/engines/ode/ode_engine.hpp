@@ -93,6 +93,7 @@ class OdeEngine final : public Engine {
   void take_threading();
   bool is_afloat(double dt) const;
   bool float_by(double dt);
+  bool float_by_laws(double dt, const ForceLaws& laws);
   void step_in_ode(double dt, bool near);
   void step_free(double dt);
   bool touches_vehicle(const std::vector<Contact>& contacts) const;

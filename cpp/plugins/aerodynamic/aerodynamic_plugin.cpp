@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "add_rotor_forces.hpp"
 #include "configuration.hpp"
 #include "effectiveness.hpp"
 #include "lanes/for_each_width.hpp"
@@ -11,7 +12,6 @@
 #include "quadcore/law_interface.hpp"
 #include "quadcore/plugin.hpp"
 #include "quadcore/plugin/error.hpp"
-#include "shown_motion.hpp"
 
 namespace quadcore::aerodynamic {
 namespace {
@@ -62,6 +62,10 @@ void warn_of_axes_against_lift(const PluginSetup& setup, const Config& config) {
         "command");
   }
 }
+
+using laws::ShownMotion;
+using laws::ShownPack;
+using laws::Vec3;
 
 Vec3<double> components(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Vector3d vector(const Vec3<double>& v) { return {v.x, v.y, v.z}; }

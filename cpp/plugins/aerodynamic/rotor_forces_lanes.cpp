@@ -1,9 +1,9 @@
-#include "shown_motion.hpp"
+#include "add_rotor_forces.hpp"
 
 namespace quadcore::aerodynamic {
 
 template <int W, bool has_32_registers>
-void add_rotor_forces(const RotorForces& law, const ShownMotion& shown) {
+void add_rotor_forces(const RotorForces& law, const laws::ShownMotion& shown) {
   using T = laws::Pack<W>;
   laws::for_each_pack<W>(shown.rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
     double* rows = shown.rotors.loads + rotor_offset(LoadRow::count, i);
@@ -12,7 +12,7 @@ void add_rotor_forces(const RotorForces& law, const ShownMotion& shown) {
     double* joint_torque = rows + LoadRow::joint_torque * widest_lanes;
     laws::RotorLoads<T> loads{laws::load3<T>(force), laws::load3<T>(reaction),
                               laws::load<T>(joint_torque)};
-    laws::add_rotor_forces(laws::laws_of_rotors<T>(law, i), ShownPack<T>{shown, i}, loads);
+    laws::add_rotor_forces<T>(law, shown, i, loads);
     laws::store3(force, loads.f_F);
     laws::store3(reaction, loads.reaction_F);
     laws::store(joint_torque, loads.joint_torque);
@@ -20,6 +20,6 @@ void add_rotor_forces(const RotorForces& law, const ShownMotion& shown) {
 }
 
 template void add_rotor_forces<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const RotorForces&,
-                                                                          const ShownMotion&);
+                                                                          const laws::ShownMotion&);
 
 }  // namespace quadcore::aerodynamic

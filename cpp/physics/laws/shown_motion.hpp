@@ -1,12 +1,10 @@
 #pragma once
 
+#include "angles.hpp"
 #include "lanes/turn.hpp"
-#include "laws/angles.hpp"
-#include "laws/rotor_forces.hpp"
+#include "rotor_forces.hpp"
 
-namespace quadcore::aerodynamic {
-
-using laws::Vec3;
+namespace quadcore::laws {
 
 /// The motion provided by an engine: its tables and the frame's numbers.
 struct ShownMotion {
@@ -20,7 +18,7 @@ struct ShownPack {
   const ShownMotion& shown;
   std::size_t i;
 
-  QUADCORE_LAW T rate() const { return laws::load<T>(row(MotionRow::rate)); }
+  QUADCORE_LAW T rate() const { return load<T>(row(MotionRow::rate)); }
   QUADCORE_LAW Vec3<T> axis_F() const { return vector(MotionRow::axis); }
   QUADCORE_LAW Vec3<T> normal_F() const { return vector(MotionRow::normal); }
   QUADCORE_LAW Vec3<T> velocity_F(bool of_origins) const {
@@ -28,33 +26,36 @@ struct ShownPack {
   }
   QUADCORE_LAW Vec3<T> in_frame(const Vec3<T>& f_R) const {
     if (shown.rotors.has_rotations) return columns(MotionRow::R_FR) * f_R;
-    return laws::turned(axis_F(), laws::sine_and_cosine(laws::load<T>(row(MotionRow::angle))),
+    return turned(axis_F(), sine_and_cosine(load<T>(row(MotionRow::angle))),
                         columns(MotionRow::R_FR_at_zero) * f_R);
   }
   QUADCORE_LAW bool windy() const { return true; }
   QUADCORE_LAW Vec3<T> v_WA_F() const { return of_frame(FrameNumber::v_WA_F); }
   QUADCORE_LAW Vec3<T> w_WF_F() const { return of_frame(FrameNumber::w_WF_F); }
   QUADCORE_LAW Vec3<T> v_WF_W() const {
-    return laws::broadcast<T>(laws::matrix(shown.frame + FrameNumber::R_WF) *
-                              laws::vec(shown.frame + FrameNumber::v_WF_F));
+    return broadcast<T>(matrix(shown.frame + FrameNumber::R_WF) *
+                              vec(shown.frame + FrameNumber::v_WF_F));
   }
 
  private:
   QUADCORE_LAW const double* row(std::size_t row) const {
     return shown.rotors.motion + rotor_offset(MotionRow::count, i) + row * widest_lanes;
   }
-  QUADCORE_LAW Vec3<T> vector(std::size_t at) const { return laws::load3<T>(row(at)); }
-  QUADCORE_LAW laws::Matrix3<T> columns(std::size_t at) const {
+  QUADCORE_LAW Vec3<T> vector(std::size_t at) const { return load3<T>(row(at)); }
+  QUADCORE_LAW Matrix3<T> columns(std::size_t at) const {
     const Vec3<T> x = vector(at), y = vector(at + 3), z = vector(at + 6);
     return {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z};
   }
   QUADCORE_LAW Vec3<T> of_frame(std::size_t number) const {
-    return laws::broadcast<T>(shown.frame + number);
+    return broadcast<T>(shown.frame + number);
   }
 };
 
-/// Add forces and reactions of all rotors to their loads, W rotors at once.
-template <int W, bool has_32_registers = false>
-void add_rotor_forces(const RotorForces& law, const ShownMotion& shown);
+/// Add the forces and reactions of a law to a pack of rotors, starting at rotor i.
+template <class T>
+QUADCORE_LAW void add_rotor_forces(const RotorForces& law, const ShownMotion& shown, std::size_t i,
+                                   RotorLoads<T>& loads) {
+  add_rotor_forces(laws_of_rotors<T>(law, i), ShownPack<T>{shown, i}, loads);
+}
 
-}  // namespace quadcore::aerodynamic
+}  // namespace quadcore::laws
