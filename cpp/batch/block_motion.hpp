@@ -40,6 +40,10 @@ struct Frames {
         w_WF_F(state.vector(StateRow::rate)),
         R_WF(rotation(q_WF)),
         v_WCcm_F(inversely(R_WF, v_WCcm_W)) {}
+
+  QUADCORE_LAW Vec3<T> v_WF_W(const Table<T>& constants) const {
+    return R_WF * (v_WCcm_F - laws::cross(w_WF_F, constants.vector(ConstantRow::p_FCcm_F)));
+  }
 };
 
 /// Motion of the i-th rotors of a pack of vehicles, see laws/rotor_forces.hpp. `upright` as in
@@ -48,6 +52,7 @@ template <class T, bool upright>
 struct Rotors {
   const Block& block;
   const Frames<T>& frames;
+  const Vec3<T>& of_frames_W;  ///< Frames::v_WF_W(), if some law requires it
   Table<T> constants, state;
   const double* turns;  ///< sine and cosine of rotor 0
   std::size_t i;
@@ -83,10 +88,7 @@ struct Rotors {
   QUADCORE_LAW bool windy() const { return false; }
   QUADCORE_LAW Vec3<T> v_WA_F() const { return {T{}, T{}, T{}}; }
   QUADCORE_LAW Vec3<T> w_WF_F() const { return frames.w_WF_F; }
-  QUADCORE_LAW Vec3<T> v_WF_W() const {
-    return frames.R_WF *
-           (frames.v_WCcm_F - laws::cross(frames.w_WF_F, constants.vector(ConstantRow::p_FCcm_F)));
-  }
+  QUADCORE_LAW Vec3<T> v_WF_W() const { return of_frames_W; }
 
  private:
   QUADCORE_LAW Vec3<T> turned(const Vec3<T>& at_zero_F) const {

@@ -59,9 +59,12 @@ QUADCORE_LAW void differentiate(const Block& block, const Places& at, const doub
     f_F = f_F + laws::airframe_force(k, frames.v_WCcm_F);
     tau_F = tau_F + laws::airframe_torque(k, frames.v_WCcm_F, frames.w_WF_F);
   }
+  // Once for all rotors.
+  Vec3<T> v_WF_W{T{}, T{}, T{}};
+  if (block.laws.acting & laws::in_link_axes) v_WF_W = frames.v_WF_W(constants);
   T joint_torques[most_rotors];
   for (std::size_t i = 0; i < block.rotors; ++i) {
-    const Rotors<T, upright> rotors{block, frames, constants, state, at.turns, i};
+    const Rotors<T, upright> rotors{block, frames, v_WF_W, constants, state, at.turns, i};
     laws::RotorLoads<T> loads{{T{}, T{}, T{}}, {T{}, T{}, T{}}, T{}};
     laws::add_rotor_forces(laws_of_rotors(block.laws, constants, i), rotors, loads);
     loads.joint_torque =
@@ -80,7 +83,7 @@ QUADCORE_LAW void differentiate(const Block& block, const Places& at, const doub
   }
   const Vec3<T> angular = constants.matrix(ConstantRow::inverse_reduced_I_F) * tau_F;
   for (std::size_t i = 0; i < block.rotors; ++i) {
-    const Rotors<T, upright> rotors{block, frames, constants, state, at.turns, i};
+    const Rotors<T, upright> rotors{block, frames, v_WF_W, constants, state, at.turns, i};
     share_out<stage>(at, share, StateRow::joint(StateRow::joint_angle, i), rotors.rate());
     share_out<stage>(at, share, StateRow::joint(StateRow::joint_rate, i),
                      joint_torques[i] * rotors.constant(ConstantRow::inverse_moment) -
@@ -215,7 +218,7 @@ void show_block(const Block& block, double* shown) {
     const auto put = [&](std::size_t row, const Vec3<T>& a)
                          QUADCORE_INLINED { laws::store3(shown + first + row * widest_lanes, a); };
     put(StateRow::position, state.vector(StateRow::position) - frames.R_WF * p_FCcm_F);
-    put(StateRow::velocity, frames.R_WF * (frames.v_WCcm_F - laws::cross(frames.w_WF_F, p_FCcm_F)));
+    put(StateRow::velocity, frames.v_WF_W(constants));
     put(StateRow::rate, frames.w_WF_F);
     const auto copy = [&](std::size_t begin, std::size_t end) QUADCORE_INLINED {
       for (std::size_t row = begin; row < end; ++row) {

@@ -113,6 +113,14 @@ template <class Mask>
 QUADCORE_LAW bool any(const Mask& mask) {
   if constexpr (sizeof(Mask) <= sizeof(std::int64_t)) {
     return mask != 0;
+#ifdef __AVX__
+  } else if constexpr (sizeof(Mask) == sizeof(__m256i)) {
+    return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
+#endif
+#ifdef __AVX512F__
+  } else if constexpr (sizeof(Mask) == sizeof(__m512i)) {
+    return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
+#endif
   } else {
     std::int64_t of_any = 0;
     for (unsigned i = 0; i < sizeof(Mask) / sizeof(std::int64_t); ++i) of_any |= mask[i];
@@ -161,7 +169,8 @@ QUADCORE_LAW T chosen_by(const Mask& mask, T a, T b) {
 }
 
 /// Test the bits, because compiler options may assume that all numbers are finite.
-QUADCORE_LAW bool is_finite(double a) {
+template <class T>
+QUADCORE_LAW auto is_finite(T a) {
   constexpr std::int64_t exponent = 0x7FF0000000000000;
   return (bits(a) & exponent) != exponent;
 }

@@ -13,7 +13,10 @@ namespace {
 int widest() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return 8;
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq")) {
+    return 8;
+  }
   if (__builtin_cpu_supports("avx2")) return 4;
 #endif
   return 2;
