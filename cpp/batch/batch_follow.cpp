@@ -109,6 +109,7 @@ void Batch::Implementation::follow_apart(std::size_t i, const BatchGuide& guide,
   const Topic& commands = topics[topics.at(Simulation::command_topic)];
   note_command(i, commands.values.data());
   settle(i);
+  if (members_[i].in_lanes) lanes_->command(i, command_of(i));
 }
 
 void Batch::Implementation::note_command(std::size_t i, const double* speeds) {

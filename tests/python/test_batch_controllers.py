@@ -56,6 +56,24 @@ def test_a_controller_and_a_reference_for_each_vehicle():
     np.testing.assert_array_equal(again[0].position, logs[1].position)
 
 
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_the_last_commands_remain_in_effect(engine):
+    """Also those of vehicles on the ground, which the batch simulates alone."""
+    heights = np.linspace(0, 4, 5)
+    batch = qc.BatchSimulation(
+        "quadrotor", 5, engine, NOISE, [(0, 0, z) for z in heights], xacro_args=SLOW
+    )
+    batch.run(1.0, controller="geometric", reference="hover")
+    batch.step(steps=50)
+    for seed, (z, position) in enumerate(zip(heights, batch.state.position)):
+        sim = qc.Simulation(
+            "quadrotor", engine, parameters=NOISE, spawn=(0, 0, z), seed=seed, xacro_args=SLOW
+        )
+        sim.run(1.0, controller="geometric", reference="hover")
+        sim.step(50)
+        np.testing.assert_array_equal(position, sim.state.position)
+
+
 class Hover:
     vectorized = True
 
