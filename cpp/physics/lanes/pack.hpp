@@ -62,13 +62,8 @@ QUADCORE_LAW void store(double* to, T pack) {
 
 template <class T>
 QUADCORE_LAW T broadcast(double number) {
-  if constexpr (sizeof(T) == sizeof(double)) {
-    return number;
-  } else {
-    T pack;
-    for (unsigned i = 0; i < sizeof(T) / sizeof(double); ++i) pack[i] = number;
-    return pack;
-  }
+  // An exact operation with a pack, because GCC would insert the numbers lane by lane.
+  return number - T{};
 }
 
 template <class T>
