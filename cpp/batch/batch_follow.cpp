@@ -130,13 +130,7 @@ batch::Follower Batch::Implementation::make_follower(std::size_t i, const batch:
                                                      const BatchGuide& guide,
                                                      BatchGuided& guided) const {
   const OdometryErrors& errors = sensor.sensor.errors;
-  return {i,
-          &guide,
-          &guided,
-          &errors,
-          seed_of(i, sensor),
-          placements_[i] * errors.draws(),
-          TotalVariation(command_width())};
+  return {i, &guide, &guided, &errors, seed_of(i, sensor), placements_[i] * errors.draws()};
 }
 
 std::uint64_t Batch::Implementation::seed_of(std::size_t i, const batch::LaneSensor& sensor) const {

@@ -111,15 +111,17 @@ struct Block {
   Bounds bounds;
   double gravity_W[3];
   const double* constants;
-  const double* motors;          ///< table of MotorRow, rotor by rotor
+  double* motors;                ///< table of MotorRow, rotor by rotor
   const std::int64_t* flies;     ///< for each vehicle -1, or 0 if it does not move
   const std::int64_t* may_spin;  ///< -1 for a vehicle without the bound `fastest`
   const std::int64_t* may_tilt;  ///< -1 for a vehicle without the bound no_tilt
   const double* clear;           ///< table of ClearRow; null in a world without obstacles
   double* state;
-  double* work;         ///< memory for two states and the sines and cosines of the rotors
-  std::int64_t* steps;  ///< number of completed steps of each vehicle, to which steps add theirs
-  const HingedTree* tree = nullptr;  ///< tree of bodies on hinges
+  double* work;            ///< memory for two states and the sines and cosines of the rotors
+  std::int64_t* steps;     ///< number of completed steps of each vehicle, to which steps add theirs
+  const HingedTree* tree;  ///< tree of bodies on hinges
+  /// Table of laws::VariationRow for the joint rate of each rotor, to which steps add; or null.
+  double* variation = nullptr;
 };
 
 /// Return the size of a block's work memory.

@@ -190,6 +190,9 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
       laws::store(at.state + row, laws::chosen_by(flies, laws::load<T>(at.stage + row),
                                                   laws::load<T>(at.state + row)));
     }
+    add_rates<T>(block, first, flies, [&](std::size_t i) QUADCORE_INLINED {
+      return state.number(StateRow::joint(StateRow::joint_rate, i));
+    });
   }
   laws::store_bits<T>(block.steps + first, steps);
 }

@@ -1,6 +1,17 @@
 #include "follower.hpp"
 
+#include "laws/variation.hpp"
+
 namespace quadcore::batch {
+
+std::vector<double> list_sums(const LaneNumbers& variation, std::size_t lane) {
+  using Row = laws::VariationRow;
+  std::vector<double> sums(variation.size() / (Row::count * widest_lanes));
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    sums[i] = variation[(i * Row::count + Row::sum) * widest_lanes + lane];
+  }
+  return sums;
+}
 
 messages::Odometry measure(const double* shown, const OdometryErrors& errors, std::uint64_t seed,
                            double draws) {

@@ -3,10 +3,9 @@
 #include <chrono>
 #include <vector>
 
-#include "block.hpp"
+#include "lane_blocks.hpp"
 #include "quadcore/batch.hpp"
 #include "quadcore/odometry_errors.hpp"
-#include "quadcore/total_variation.hpp"
 
 namespace quadcore::batch {
 
@@ -16,17 +15,24 @@ struct Follower {
   const BatchGuide* guide;
   BatchGuided* guided;
   const OdometryErrors* errors;
-  std::uint64_t seed;  ///< of the odometry
-  double draws;        ///< random numbers before the measurement at the start
-  TotalVariation commands;
+  std::uint64_t seed;     ///< of the odometry
+  double draws;           ///< random numbers before the measurement at the start
   bool has_left = false;  ///< whether it has left the lanes; its results are then incomplete
-
   /// Speeds in effect at the end; empty before the first command.
   std::vector<double> speeds = {};
+
+  /// Leave the lanes, where the vehicle then no longer moves.
+  void leave(LaneBlocks& lanes) {
+    has_left = true;
+    lanes.let_fly(vehicle, false);
+  }
 
   /// Return the column of the vehicle in its block.
   std::size_t lane() const { return vehicle % widest_lanes; }
 };
+
+/// Return the sum of each number of a column of laws::VariationRow.
+std::vector<double> list_sums(const LaneNumbers& variation, std::size_t lane);
 
 /// Return the odometry of a shown state.
 /// \param shown  column of the vehicle in the rows of LaneBlocks::show()
@@ -34,20 +40,15 @@ struct Follower {
 messages::Odometry measure(const double* shown, const OdometryErrors& errors, std::uint64_t seed,
                            double draws);
 
-/// Note a call of a controller. Returns whether to measure the duration of this one.
-inline bool count_call(BatchGuided& guided) {
-  constexpr std::int64_t between_timings = 16;
-  return guided.calls++ % between_timings == 0;
-}
-
-/// Measures durations.
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-
- private:
+/// Call a controller and count the call.
+/// \param seconds  where to add the duration of every sixteenth call [s]
+template <class Call>
+void count_call(std::int64_t& calls, std::vector<double>& seconds, const Call& call) {
   using Clock = std::chrono::steady_clock;
-  Clock::time_point begin_ = Clock::now();
-};
+  if (calls++ % 16 != 0) return call();
+  const Clock::time_point begin = Clock::now();
+  call();
+  seconds.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
+}
 
 }  // namespace quadcore::batch

@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "flat_table.hpp"
+#include "laws/variation.hpp"
 #include "quadcore/control/control_loop.hpp"
 #include "quadcore/control/guided_controller.hpp"
+#include "quadcore/total_variation.hpp"
 
 namespace quadcore::batch {
 /// A follower and the memory of its controller.
@@ -16,6 +18,7 @@ struct GuidedBlock::Control {
   control::Schedule schedule;
   control::ReferencePreview* preview;
   std::vector<double> pending, memory;  ///< states of the schedule and of the controller
+  TotalVariation commands;
 };
 
 GuidedBlock::GuidedBlock(LaneBlocks& lanes, std::size_t block, double dt, double* work)
@@ -23,7 +26,7 @@ GuidedBlock::GuidedBlock(LaneBlocks& lanes, std::size_t block, double dt, double
       block_(block),
       dt_(dt),
       work_(work),
-      rates_(lanes.rotors(), TotalVariation(widest_lanes)) {}
+      rates_(lanes.rotors() * laws::VariationRow::count * widest_lanes) {}
 GuidedBlock::~GuidedBlock() = default;
 
 void GuidedBlock::add(Follower& follower) {
@@ -31,15 +34,16 @@ void GuidedBlock::add(Follower& follower) {
   control::ReferencePreview& preview = preview_of(guide);
   const auto controller = guide.controller->in_lanes(std::max(1 / guide.rate, dt_));
   if (!controller) {
-    const control::Schedule schedule(guide.rate, guide.delay, guide.controller->rotors());
+    const std::size_t rotors = guide.controller->rotors();
+    const control::Schedule schedule(guide.rate, guide.delay, rotors);
     alone_.push_back({&follower, schedule, &preview, std::vector<double>(schedule.state_size()),
-                      std::vector<double>(guide.controller->state_size())});
+                      std::vector<double>(guide.controller->state_size()), TotalVariation(rotors)});
     return;
   }
   const auto takes = [&](const LaneControls& group) { return group.takes(follower, *controller); };
   auto group = std::find_if(in_lanes_.begin(), in_lanes_.end(), takes);
   if (group == in_lanes_.end()) {
-    in_lanes_.emplace_back(follower, controller);
+    in_lanes_.emplace_back(lanes_, dt_, follower, controller);
     group = in_lanes_.end() - 1;
   }
   group->add(follower, *controller, preview);
@@ -60,25 +64,29 @@ control::ReferencePreview& GuidedBlock::preview_of(const BatchGuide& guide) {
 void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n,
                           std::int64_t log_every) {
   for (Follower& follower : followers) add(follower);
+  const auto has_log = [](const Follower& follower) { return follower.guided->log != nullptr; };
+  if (std::none_of(followers.begin(), followers.end(), has_log)) log_every = std::max(n, log_every);
   std::int64_t step = 0;
   lanes_.show(block_, work_);
   for (const Follower& follower : followers) log(follower, 0);
-  note_rates();
+  begin_rates();
   while (step < n) {
     const auto logged = static_cast<double>(std::min(n, (step / log_every + 1) * log_every));
     const auto next = static_cast<std::int64_t>(update(static_cast<double>(step), logged));
-    for (; step < next; ++step) this->step(followers);
-    if (!lanes_.are_hinged()) lanes_.show(block_, work_);
+    this->step(followers, next - step);
+    step = next;
+    lanes_.show(block_, work_);
     if (step % log_every != 0) continue;
     for (const Follower& follower : followers) {
       if (!follower.has_left) log(follower, static_cast<double>(step));
     }
   }
   for (const Follower& follower : followers) {
-    for (const TotalVariation& rates : rates_) {
-      follower.guided->rate_variation.push_back(rates.sums()[follower.lane()]);
-    }
-    follower.guided->command_variation = follower.commands.sums();
+    follower.guided->rate_variation = list_sums(rates_, follower.lane());
+  }
+  for (const LaneControls& group : in_lanes_) group.finish();
+  for (const Control& control : alone_) {
+    control.follower->guided->command_variation = control.commands.sums();
   }
 }
 
@@ -86,10 +94,8 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n,
 /// effect, or `next` if that is earlier.
 double GuidedBlock::update(double step, double next) {
   for (LaneControls& group : in_lanes_) {
-    group.update(
-        step, dt_, work_, [this](Follower& follower) { drop(follower); },
-        [this](Follower& follower, const double* speeds) { take(follower, speeds); });
-    next = std::min(next, group.next_event(step, dt_));
+    group.update(step, work_);
+    next = std::min(next, group.next_event(step));
   }
   for (Control& control : alone_) {
     if (control.follower->has_left) continue;
@@ -99,55 +105,52 @@ double GuidedBlock::update(double step, double next) {
   return next;
 }
 
-void GuidedBlock::step(std::vector<Follower>& followers) {
+void GuidedBlock::step(std::vector<Follower>& followers, std::int64_t count) {
   std::int64_t flown[widest_lanes];
-  lanes_.step(block_, 1, dt_, work_, flown);
+  lanes_.step(block_, count, dt_, work_, flown, rates_.data());
   for (Follower& follower : followers) {
-    if (flown[follower.lane()] == 0) drop(follower);
-  }
-  note_rates();
-}
-
-void GuidedBlock::note_rates() {
-  const double* const rows = lanes_.find_rates(block_, work_);
-  for (std::size_t i = 0; i < rates_.size(); ++i) {
-    rates_[i].add(rows + StateRow::joint(StateRow::joint_rate, i) * widest_lanes);
+    if (flown[follower.lane()] < count) follower.leave(lanes_);
   }
 }
 
-void GuidedBlock::drop(Follower& follower) {
-  follower.has_left = true;
-  lanes_.let_fly(follower.vehicle, false);
+/// Take the joint rates at the start from the shown state.
+void GuidedBlock::begin_rates() {
+  for (std::size_t i = 0; i < lanes_.rotors(); ++i) {
+    const double* const rates = work_ + StateRow::joint(StateRow::joint_rate, i) * widest_lanes;
+    for (std::size_t lane = 0; lane < widest_lanes; ++lane) {
+      laws::begin_variation(&rates_[i * laws::VariationRow::count * widest_lanes + lane],
+                            rates[lane]);
+    }
+  }
 }
 
 void GuidedBlock::update(Control& control, double step) {
-  Follower& follower = *control.follower;
   try {
     const double* const speeds = control.schedule.update(
-        step, dt_, control.pending.data(),
-        [&](double period, double* asked) { command(control, step, period, asked); });
-    if (!speeds) return;
-    take(follower, speeds);
+        step, dt_, control.pending.data(), [&](double period, double* asked) {
+          BatchGuided& guided = *control.follower->guided;
+          count_call(guided.calls, guided.seconds, [&] { command(control, step, period, asked); });
+        });
+    if (speeds) take(control, speeds);
   } catch (const std::exception&) {  // outside the lanes, the error ends the flight
-    drop(follower);
+    control.follower->leave(lanes_);
   }
 }
 
 /// Command the rotors of a follower.
-void GuidedBlock::take(Follower& follower, const double* speeds) {
+void GuidedBlock::take(Control& control, const double* speeds) {
+  Follower& follower = *control.follower;
   const std::size_t rotors = follower.guide->controller->rotors();
   follower.speeds.assign(speeds, speeds + rotors);
   const bool are_finite =
       std::all_of(speeds, speeds + rotors, [](double speed) { return std::isfinite(speed); });
-  if (!are_finite) return drop(follower);
+  if (!are_finite) return follower.leave(lanes_);
   lanes_.command(follower.vehicle, speeds);
-  follower.commands.add(speeds);
+  control.commands.add(speeds);
 }
 
 void GuidedBlock::command(Control& control, double step, double period, double* speeds) {
   const Follower& follower = *control.follower;
-  const bool is_timed = count_call(*follower.guided);
-  const Stopwatch stopwatch;
   const OdometryErrors& errors = *follower.errors;
   const messages::Odometry odometry = measure(work_ + follower.lane(), errors, follower.seed,
                                               follower.draws + step * errors.draws());
@@ -164,7 +167,6 @@ void GuidedBlock::command(Control& control, double step, double period, double* 
   follower.guide->controller->command(period, odometry, point.wanted, memory, speeds,
                                       flat ? &*flat : nullptr);
   follower.guided->saturated += control::Controller::saturated(memory);
-  if (is_timed) follower.guided->seconds.push_back(stopwatch.seconds());
 }
 
 void GuidedBlock::log(const Follower& follower, double step) const {
@@ -199,11 +201,9 @@ void follow_apart(Simulation& simulation, const BatchGuide& guide, const std::st
   };
   try {
     loop.advance(n, [&](double period, double* speeds) {
-      const bool is_timed = count_call(guided);
-      const Stopwatch stopwatch;
-      controller.command(period, topic, *guide.reference, list_times, speeds);
+      count_call(guided.calls, guided.seconds,
+                 [&] { controller.command(period, topic, *guide.reference, list_times, speeds); });
       guided.saturated += controller.saturated();
-      if (is_timed) guided.seconds.push_back(stopwatch.seconds());
     });
   } catch (...) {
     finish();

@@ -28,12 +28,11 @@ class GuidedBlock {
   control::ReferencePreview& preview_of(const BatchGuide& guide);
   double update(double step, double next);
   void update(Control& control, double step);
-  void take(Follower& follower, const double* speeds);
+  void take(Control& control, const double* speeds);
   void command(Control& control, double step, double period, double* speeds);
   void log(const Follower& follower, double step) const;
-  void drop(Follower& follower);
-  void step(std::vector<Follower>& followers);
-  void note_rates();
+  void step(std::vector<Follower>& followers, std::int64_t count);
+  void begin_rates();
   double shown(std::size_t row, const Follower& follower) const {
     return work_[row * widest_lanes + follower.lane()];
   }
@@ -50,8 +49,8 @@ class GuidedBlock {
   };
   std::vector<Shared> previews_;
   std::vector<LaneControls> in_lanes_;
-  std::vector<Control> alone_;         ///< controllers that are only for single vehicles
-  std::vector<TotalVariation> rates_;  ///< of the vehicles, for each rotor
+  std::vector<Control> alone_;  ///< controllers that are only for single vehicles
+  LaneNumbers rates_;           ///< variation of the joint rates, see Block
 };
 
 /// Advance a simulation by n steps under a controller.

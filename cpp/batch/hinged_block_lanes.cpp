@@ -173,6 +173,8 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
     flies &= is_sound(block.bounds, outcome(bodies));
     steps -= flies;
     copy(at.moved, at.state, flies);
+    add_rates<T>(block, first, flies,
+                 [&](std::size_t i) QUADCORE_INLINED { return bodies.joint_rate(i + 1); });
   }
   laws::store_bits<T>(block.steps + first, steps);
 }

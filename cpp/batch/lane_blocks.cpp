@@ -97,7 +97,10 @@ void LaneBlocks::choose_width() {
       &step_hinged_block<1>, &step_hinged_block<2>, &step_hinged_block<4>, &step_hinged_block<8>};
   static constexpr laws::ForEachWidth<Show> hinged_shows{
       &show_hinged_block<1>, &show_hinged_block<2>, &show_hinged_block<4>, &show_hinged_block<8>};
+  static constexpr laws::ForEachWidth<void(const Block&, const int*, const Commands&)> commands{
+      &command_motors<1>, &command_motors<2>, &command_motors<4>, &command_motors<8>};
   const int width = lane_width(widest_lanes);
+  command_ = commands[width];
   step_ = are_hinged() ? hinged_steps[width] : steps[width];
   show_ = are_hinged() ? hinged_shows[width] : shows[width];
 }
@@ -154,6 +157,10 @@ void LaneBlocks::command(std::size_t vehicle, const double* speeds) {
   }
 }
 
+void LaneBlocks::command(std::size_t block, const Commands& commands) {
+  if (!is_empty()) command_(view(block, nullptr, nullptr), places_.data(), commands);
+}
+
 Block LaneBlocks::view(std::size_t block, double* work, std::int64_t* steps) {
   const auto part = [block](LaneNumbers& table, std::size_t rows) {
     return table.data() + block * rows * widest_lanes;
@@ -176,11 +183,13 @@ Block LaneBlocks::view(std::size_t block, double* work, std::int64_t* steps) {
 }
 
 void LaneBlocks::step(std::size_t block, std::int64_t count, double dt, double* work,
-                      std::int64_t* steps) {
+                      std::int64_t* steps, double* variation) {
   std::fill_n(steps, widest_lanes, 0);
   if (is_empty()) return;
+  Block stepped = view(block, work, steps);
+  stepped.variation = variation;
   do {
-    step_(view(block, work, steps), count, dt);
+    step_(stepped, count, dt);
   } while (clear_balls_ && move_clear_balls(block, count, steps));
 }
 
@@ -200,12 +209,6 @@ bool LaneBlocks::move_clear_balls(std::size_t block, std::int64_t count,
 
 void LaneBlocks::show(std::size_t block, double* work) {
   if (!is_empty()) show_(view(block, work, nullptr), work);
-}
-
-const double* LaneBlocks::find_rates(std::size_t block, double* work) {
-  if (!are_hinged()) return state_.data() + block * state_rows() * widest_lanes;
-  show(block, work);
-  return work;
 }
 
 void LaneBlocks::show(std::size_t block, std::size_t vehicles, double* work, double* rows) {

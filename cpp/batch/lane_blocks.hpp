@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clear_balls.hpp"
+#include "command_motors.hpp"
 #include "lane_vehicle.hpp"
 #include "quadcore/plugin/rotor_rows.hpp"
 
@@ -31,24 +32,25 @@ class LaneBlocks {
   void begin(std::size_t vehicle, const std::vector<double>& engine_state);
   /// Set the targets of a vehicle's motors.
   void command(std::size_t vehicle, const double* speeds);
+  /// Set the targets of the motors of vehicles of a block.
+  void command(std::size_t block, const Commands& commands);
   /// Return whether a vehicle moves in the steps of its block.
   bool flies(std::size_t vehicle) const { return flies_[vehicle] != 0; }
   /// Set whether a vehicle moves in the steps of its block.
   void let_fly(std::size_t vehicle, bool flies);
   /// Remove the bounds of a vehicle beyond which its plugins have already warned.
   void lift_bounds(std::size_t vehicle, const std::vector<Quiet>& quiet);
-  /// \param work   separate work memory of each thread
-  /// \param steps  number of completed steps of each vehicle of the block, up to `count`
-  void step(std::size_t block, std::int64_t count, double dt, double* work, std::int64_t* steps);
+  /// \param work       separate work memory of each thread
+  /// \param steps      number of completed steps of each vehicle of the block, up to `count`
+  /// \param variation  see Block
+  void step(std::size_t block, std::int64_t count, double dt, double* work, std::int64_t* steps,
+            double* variation = nullptr);
 
   /// Convert to and from the state that the engine saves, without changing the part of contacts.
   void get_engine_state(std::size_t vehicle, std::vector<double>& state) const;
   void set_engine_state(std::size_t vehicle, const std::vector<double>& state);
   /// Write the states of a block in rows of StateRow, but without the angles of hinged vehicles.
   void show(std::size_t block, double* work);
-  /// Return a table of StateRow of which the joint rates are those of the block.
-  /// \param work  written like show() if the vehicles are hinged, whose state has no joint rates
-  const double* find_rates(std::size_t block, double* work);
   /// Write the rows of Batch::get_state() for all vehicles of a block.
   void show(std::size_t block, std::size_t vehicles, double* work, double* rows);
 
@@ -101,6 +103,7 @@ class LaneBlocks {
   std::vector<std::vector<double>> of_contact_;
   void (*step_)(const Block&, std::int64_t, double) = nullptr;
   void (*show_)(const Block&, double*) = nullptr;
+  void (*command_)(const Block&, const int*, const Commands&) = nullptr;
 };
 
 }  // namespace quadcore::batch

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "actuation_formulas.hpp"
 #include "lanes/for_each_width.hpp"
+#include "laws/variation.hpp"
 #include "measure_block.hpp"
 #include "numbers.hpp"
 #include "quadcore/lane_width.hpp"
@@ -14,6 +16,7 @@ namespace quadcore::batch {
 namespace {
 
 using control::size_of;
+using laws::VariationRow;
 
 /// Errors of each quantity, in the order of ErrorNumbers.
 std::array<VectorErrors, measured_quantities> list_errors(const OdometryErrors& errors) {
@@ -32,17 +35,11 @@ bool measure_alike(const OdometryErrors& a, const OdometryErrors& b) {
 
 }  // namespace
 
-void PackTable::fill(const double* column) {
-  for (std::size_t part = 0; part < widest_lanes / width_; ++part) {
-    for (std::size_t row = 0; row < rows_; ++row) {
-      std::fill_n(&numbers_[(part * rows_ + row) * width_], width_, column[row]);
-    }
-  }
-}
-
-LaneControls::LaneControls(const Follower& like,
+LaneControls::LaneControls(LaneBlocks& lanes, double dt, const Follower& like,
                            std::shared_ptr<const control::LaneController> controller)
-    : like_(std::move(controller)),
+    : lanes_(lanes),
+      dt_(dt),
+      like_(std::move(controller)),
       rate_(like.guide->rate),
       delay_(like.guide->delay),
       errors_(like.errors),
@@ -57,7 +54,9 @@ LaneControls::LaneControls(const Follower& like,
       wanted_(width_, size_of<control::WantedNumbers>),
       state_(width_, like_->state.size()),
       demand_(width_, size_of<control::DemandNumbers>),
-      speeds_(width_, rotors_) {}
+      asked_(width_, rotors_),
+      in_effect_(width_, rotors_),
+      variation_(rotors_ * VariationRow::count * widest_lanes) {}
 
 bool LaneControls::takes(const Follower& follower,
                          const control::LaneController& controller) const {
@@ -68,7 +67,14 @@ bool LaneControls::takes(const Follower& follower,
 void LaneControls::add(Follower& follower, const control::LaneController& controller,
                        control::ReferencePreview& preview) {
   const std::size_t lane = follower.lane();
-  members_.push_back({&follower, lane, &preview, true});
+  followers_.push_back(&follower);
+  const auto reads = [&](const Followed& followed) { return followed.preview == &preview; };
+  auto followed = std::find_if(followed_.begin(), followed_.end(), reads);
+  if (followed == followed_.end()) {
+    followed_.push_back({&preview, {}});
+    followed = followed_.end() - 1;
+  }
+  followed->followers.push_back(&follower);
   numbers_.put(lane, controller.wrench_controller.numbers.data());
   actuators_.put(lane, controller.actuators.data());
   state_.put(lane, controller.state.data());
@@ -80,33 +86,37 @@ void LaneControls::add(Follower& follower, const control::LaneController& contro
   }
   sensors_.put(lane, control::list_numbers(errors).data());
   seeds_[lane] = follower.seed;
+  begins_[lane] = count_of(follower.draws);
+  belong_[lane] = -1;
 }
 
-void LaneControls::command(double step, double dt, double period, const double* shown,
-                           double* speeds) {
-  bool is_timed = false;
-  for (const Member& member : members_) is_timed = count_call(*member.follower->guided);
-  const Stopwatch stopwatch;
+void LaneControls::update(double step, const double* shown) {
+  const double* const speeds =
+      schedule_.update(step, dt_, pending_.data(), [&](double period, double* asked) {
+        count_call(calls_, seconds_, [&] { call(step, period, shown); });
+        std::copy_n(asked_.data(), asked_.size(), asked);
+      });
+  if (!speeds) return;
+  std::copy_n(speeds, in_effect_.size(), in_effect_.data());
+  take();
+}
+
+void LaneControls::call(double step, double period, const double* shown) {
   measure(step, shown);
-  read_references(step, dt);
-  call(period);
-  const double seconds = is_timed ? stopwatch.seconds() : 0;
-  for (const Member& member : members_) {
-    speeds_.get(member.lane, speeds + member.lane * rotors_);
-    BatchGuided& guided = *member.follower->guided;
-    guided.saturated += state_.at(control::ActuationRow::saturated, member.lane) != 0;
-    if (is_timed) guided.seconds.push_back(seconds / static_cast<double>(members_.size()));
+  read_references(step);
+  command(period);
+  for (const Follower* follower : followers_) {
+    saturated_[follower->lane()] +=
+        state_.at(control::ActuationRow::saturated, follower->lane()) != 0;
   }
 }
 
 void LaneControls::measure(double step, const double* shown) {
   static constexpr laws::ForEachWidth<void(const MeasureBlock&)> measures{
       &measure_block<1>, &measure_block<2>, &measure_block<4>, &measure_block<8>};
-  for (const Member& member : members_) {
-    const Follower& follower = *member.follower;
-    counts_[member.lane] = count_of(follower.draws + step * follower.errors->draws());
-  }
-  MeasureBlock block{shown, {}, {}, sensors_.data(), seeds_, counts_, measured_.data()};
+  MeasureBlock block{
+      shown,           {}, {}, sensors_.data(), seeds_, begins_, count_of(step * errors_->draws()),
+      measured_.data()};
   const auto errors = list_errors(*errors_);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     block.is_noisy[i] = errors[i].noise != 0;
@@ -115,35 +125,30 @@ void LaneControls::measure(double step, const double* shown) {
   measures[width_](block);
 }
 
-void LaneControls::read_references(double step, double dt) {
-  // Made once, because it allocates memory.
-  const control::ReferencePreview::ListTimes list_times = [&](double* times, std::size_t count) {
+void LaneControls::read_references(double step) {
+  const auto list_times = [&](double* times, std::size_t count) {
     double at = step;
     for (std::size_t i = 0; i < count; ++i) {
-      times[i] = at * dt;
-      at = schedule_.next_call(at, dt);
+      times[i] = at * dt_;
+      at = schedule_.next_call(at, dt_);
     }
   };
-  const control::ReferencePreview* of_all = nullptr;
-  for (Member& member : members_) {
-    const BatchGuide& guide = *member.follower->guide;
+  for (const Followed& followed : followed_) {
+    const BatchGuide& guide = *followed.followers.front()->guide;
     const control::ReferencePreview::Point& point =
-        member.preview->at(step * dt, *guide.reference, list_times);
-    const bool feeds = guide.controller->feeds() != control::WrenchController::Feeds::nothing;
-    member.is_defined = point.flat || !feeds;
-    if (member.preview == of_all) continue;
+        followed.preview->at(step * dt_, *guide.reference, std::cref(list_times));
     const auto wanted = control::numbers_of(point);
     const auto* const column = reinterpret_cast<const double*>(&wanted);
-    if (of_all) {
-      wanted_.put(member.lane, column);
-    } else {
-      wanted_.fill(column);
-      of_all = member.preview;
+    const bool feeds = guide.controller->feeds() != control::WrenchController::Feeds::nothing;
+    if (&followed == &followed_.front()) wanted_.fill(column);
+    for (Follower* follower : followed.followers) {
+      if (&followed != &followed_.front()) wanted_.put(follower->lane(), column);
+      if (feeds && !point.flat) follower->leave(lanes_);
     }
   }
 }
 
-void LaneControls::call(double period) {
+void LaneControls::command(double period) {
   static constexpr laws::ForEachWidth<void(const control::CommandBlock&)> calls{
       &control::command_block<1>, &control::command_block<2>, &control::command_block<4>,
       &control::command_block<8>};
@@ -151,18 +156,46 @@ void LaneControls::call(double period) {
   calls[width_]({like_->wrench_controller.kind, like_->wrench_controller.switches, widest_lanes,
                  rotors_, like_->wrench_controller.numbers.size(), like_->state.size(), period,
                  !has_begun_, numbers_.data(), actuators_.data(), measured_.data(), wanted_.data(),
-                 state_.data(), demand_.data(), speeds_.data(), complete});
+                 state_.data(), demand_.data(), asked_.data(), complete});
   has_begun_ = true;
-  for (const Member& member : members_) {
-    if (complete[member.lane] != 0 || member.follower->has_left) continue;
+  for (const Follower* follower : followers_) {
+    const std::size_t lane = follower->lane();
+    if (complete[lane] != 0 || follower->has_left) continue;
     std::vector<double> state(like_->state.size()), speeds(rotors_);
     control::DemandNumbers<double> demand{};
-    demand_.get(member.lane, reinterpret_cast<double*>(&demand));
-    state_.get(member.lane, state.data());
-    member.follower->guide->controller->act(period, control::demand_of(demand), state.data(),
-                                            speeds.data());
-    state_.put(member.lane, state.data());
-    speeds_.put(member.lane, speeds.data());
+    demand_.get(lane, reinterpret_cast<double*>(&demand));
+    state_.get(lane, state.data());
+    follower->guide->controller->act(period, control::demand_of(demand), state.data(),
+                                     speeds.data());
+    state_.put(lane, state.data());
+    asked_.put(lane, speeds.data());
+  }
+}
+
+void LaneControls::take() {
+  std::int64_t are_finite[widest_lanes];
+  const std::size_t block = followers_.front()->vehicle / widest_lanes;
+  lanes_.command(
+      block, {rotors_, in_effect_.data(), belong_, !has_commanded_, variation_.data(), are_finite});
+  has_commanded_ = true;
+  for (Follower* follower : followers_) {
+    if (are_finite[follower->lane()] == 0) follower->leave(lanes_);
+  }
+}
+
+void LaneControls::finish() const {
+  for (Follower* follower : followers_) {
+    const std::size_t lane = follower->lane();
+    BatchGuided& guided = *follower->guided;
+    guided.calls = calls_;
+    guided.saturated = saturated_[lane];
+    for (const double seconds : seconds_) {
+      guided.seconds.push_back(seconds / static_cast<double>(followers_.size()));
+    }
+    guided.command_variation = list_sums(variation_, lane);
+    if (!has_commanded_) continue;
+    follower->speeds.resize(rotors_);
+    in_effect_.get(lane, follower->speeds.data());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "block_motion.hpp"
 #include "lanes/mask.hpp"
+#include "laws/variation.hpp"
 
 namespace quadcore::batch {
 
@@ -17,15 +18,25 @@ struct Outcome {
 /// Return the vehicles that can continue without further checks.
 template <class T>
 QUADCORE_LAW Mask<T> is_sound(const Bounds& bounds, const Outcome<T>& left) {
-  // Test the bits, because compiler options may assume finite numbers.
-  constexpr std::int64_t exponent = 0x7FF0000000000000;
   const T all =
       ((left.distance_squared + left.speed_squared) + left.rate_squared) + left.joint_rates_squared;
-  const auto finite = (laws::bits(all) & exponent) != exponent;
-  return mask<T>(finite) & mask<T>(left.distance_squared < bounds.distance_squared) &
+  return mask<T>(laws::is_finite(all)) & mask<T>(left.distance_squared < bounds.distance_squared) &
          mask<T>(left.speed_squared < bounds.speed_squared) &
          mask<T>(left.rate_squared < bounds.rate_squared) &
          mask<T>(left.joint_rates_squared < bounds.rate_squared);
+}
+
+/// Add the joint rates after a step to the variation of the vehicles that have taken it.
+/// \param rate  called as rate(i) for each rotor
+template <class T, class Rate>
+QUADCORE_LAW void add_rates(const Block& block, std::size_t first, const Mask<T>& flies,
+                            const Rate& rate) {
+  if (!block.variation) return;
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    double* const rows = block.variation + i * laws::VariationRow::count * widest_lanes + first;
+    const T last = laws::load<T>(rows + laws::VariationRow::last * widest_lanes);
+    laws::add_variation(rows, laws::chosen_by(flies, rate(i), last));
+  }
 }
 
 /// Return the vehicles that have further steps to take, and stay in their balls without obstacles

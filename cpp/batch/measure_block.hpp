@@ -23,7 +23,8 @@ struct MeasureBlock {
   bool is_noisy[measured_quantities], is_quantised[measured_quantities];  ///< of all vehicles
   const double* errors;         ///< table of ErrorNumbers, see control::CommandBlock
   const std::uint64_t* seeds;   ///< seed of each vehicle
-  const std::uint64_t* counts;  ///< random numbers before this measurement of each vehicle
+  const std::uint64_t* begins;  ///< random numbers before the measurement at the start, of each
+  std::uint64_t count;          ///< random numbers of each vehicle from then to this measurement
   double* measured;             ///< written table of control::MeasuredNumbers
 };
 

@@ -19,7 +19,8 @@ QUADCORE_LAW void measure(const MeasureBlock& block, std::size_t part) {
       *reinterpret_cast<const ErrorNumbers<T>*>(block.errors + part * error_rows * width);
   laws::UnsignedOf<T> seeds, counts;
   __builtin_memcpy(&seeds, block.seeds + part * width, sizeof seeds);
-  __builtin_memcpy(&counts, block.counts + part * width, sizeof counts);
+  __builtin_memcpy(&counts, block.begins + part * width, sizeof counts);
+  counts += block.count;
   const auto measured = [&](const laws::Vec3<T>& truth, int quantity) QUADCORE_INLINED {
     laws::Vec3<T> a = truth;
     if (block.is_noisy[quantity]) {

@@ -122,6 +122,14 @@ def test_a_lost_rotor_reaches_the_controller():
     assert_alike(of_seeds(plan, 2))
 
 
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_flights_between_obstacles(engine):
+    """Vehicles stop where their known free space ends, while others in their block move on."""
+    first = make_plan(engine=engine, world="slalom", reference="eight")
+    other = replace(first, reference=references.parse("hover"))
+    assert_alike([replace(first if i % 3 else other, seed=i) for i in range(5)])
+
+
 def test_flights_that_fail():
     """A vehicle beyond the limits of a batch ends like alone, and the others fly on."""
     plans = of_seeds(make_plan(duration=4.0))
