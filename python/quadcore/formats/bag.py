@@ -15,7 +15,7 @@ from ..support import interrupts
 from ..support.input_files import check_regular
 from ..support.optional_packages import require_package
 from ..support.output_files import atomic_write, make_write_error, name_temporary
-from ..support.rotation import to_roll_pitch_yaw
+from ..support.rotation import to_yaw
 from .bag_messages import ARRAY, Messages
 from .rows import (
     LogRows,
@@ -70,7 +70,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
 def read_path(path: Path) -> np.ndarray:
     """Read the path of a vehicle: t, x, y, z and yaw; shape (rows, 5)."""
     rows = read_log(path).rows
-    yaw = np.unwrap(to_roll_pitch_yaw(rows[:, 4:8])[:, 2])
+    yaw = np.unwrap(to_yaw(rows[:, 4:8]))
     return np.column_stack([rows[:, :4], yaw])
 
 

@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 
 from .. import _core
-from .._core import Model, QuadcoreError, World
+from .._core import Model, QuadcoreError, Rotor, World
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED
 from ..control.own_columns import list_names
@@ -75,13 +75,16 @@ class FlightRecord(NamedTuple):
 
 
 def make_record(
-    pilot: Union[ControllerPilot, PluginPilot], simulation: Any, plan: FlightPlan, **results: Any
+    pilot: Union[ControllerPilot, PluginPilot],
+    rotors: Sequence[Rotor],
+    plan: FlightPlan,
+    **results: Any,
 ) -> FlightRecord:
-    """Make the record of a flight from its pilot, its simulation and its plan.
+    """Make the record of a flight from its pilot, its rotors and its plan.
 
     Parameters
     ----------
-    pilot, simulation, plan
+    pilot, rotors, plan
         Those of a flight of the same vehicle.
     **results
         Other fields of the record.
@@ -92,8 +95,8 @@ def make_record(
         delay=pilot.delay,
         is_vectorized=pilot.is_vectorized,
         estimate_errors=pilot.estimate_errors,
-        rotors=[RotorData.of(rotor) for rotor in simulation.rotors],
-        limit=find_speed_limit(simulation.rotors),
+        rotors=[RotorData.of(rotor) for rotor in rotors],
+        limit=find_speed_limit(rotors),
         model=plan.model,
         world=plan.world,
     )
@@ -203,6 +206,7 @@ class _Kind:
         self.logs = GuidedLogs(simulation, pilot)
         self.dt = simulation.dt
         self.simulation = simulation  # the controller refers to it
+        self.rotors = simulation.rotors
         self._flat_states: Optional[np.ndarray] = None
 
     def sample_flat_states(self, times: np.ndarray) -> Optional[np.ndarray]:
@@ -287,7 +291,7 @@ def _fly(plans: Sequence[FlightPlan], needs_flat_states: bool) -> List[FlightRec
     return [
         make_record(
             kind.pilot,
-            kind.simulation,
+            kind.rotors,
             plans[i],
             log=logs[i],
             flat_states=kind.sample_flat_states(logs[i].time) if needs_flat_states else None,
@@ -323,7 +327,7 @@ def _fly_vectorized(plans: Sequence[FlightPlan], needs_flat_states: bool) -> Lis
     return [
         make_record(
             kind.pilot,
-            kind.simulation,
+            kind.rotors,
             plans[i],
             log=logs[i],
             flat_states=kind.sample_flat_states(logs[i].time) if needs_flat_states else None,

@@ -152,7 +152,7 @@ def fly_alone(
             flat_states = sample_flat_states(flight.simulation(), flight, log.time)
         return make_record(
             pilot,
-            simulation,
+            simulation.rotors,
             flight,
             log=log,
             flat_states=flat_states,

@@ -10,7 +10,7 @@ import numpy as np
 from .._core import Rotor
 from ..simulation.log import Log
 from ..simulation.recording import TAIL
-from ..support.rotation import compute_tilts, to_roll_pitch_yaw
+from ..support.rotation import compute_tilts, to_yaw
 
 FAILURE_DISTANCE = 5.0
 """Default tracking error at which a flight counts as failed, m."""
@@ -136,7 +136,7 @@ def measure(
     tail = time > time[-1] - TAIL
     late = time > time[-1] - min(TAIL, time[-1] / 2)
     errors = np.column_stack([log.topics["error"][axis] for axis in "xyz"])
-    yaw = to_roll_pitch_yaw(log.orientation)[:, 2] - log.topics["reference"]["yaw"]
+    yaw = to_yaw(log.orientation) - log.topics["reference"]["yaw"]
     speeds = np.abs(log.rotor_velocity) * [rotor.slowdown for rotor in rotors]
     span = max(time[-1], np.finfo(float).tiny)
     rise, overshoot, settling = _measure_step(log, away)

@@ -21,8 +21,14 @@ def to_roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
     x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
-    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-    return np.stack([roll, pitch, yaw], axis=-1)
+    return np.stack([roll, pitch, to_yaw(orientation)], axis=-1)
+
+
+def to_yaw(orientation: np.ndarray) -> np.ndarray:
+    """Return the yaw of `to_roll_pitch_yaw`, rad; shape (...)."""
+    x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
+    yaw: np.ndarray = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return yaw
 
 
 def compute_tilts(orientation: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import Dict
 import numpy as np
 
 from ...simulation.log import Log
-from ...support.rotation import compute_tilts, to_roll_pitch_yaw
+from ...support.rotation import compute_tilts, to_yaw
 
 UNITS = {
     "final_x": "m",
@@ -45,7 +45,7 @@ def measure(log: Log) -> Dict[str, float]:
     steps = np.linalg.norm(np.diff(log.position, axis=0), axis=1)
     values = (
         *log.position[-1],
-        to_roll_pitch_yaw(log.orientation[-1:])[0, 2],
+        to_yaw(log.orientation[-1:])[0],
         tilt[-1],
         speed[-1],
         tilt.max(),
