@@ -32,12 +32,26 @@ struct Places {
   }
 };
 
+/// Rates of the joints of all rotors [rad/s].
+template <class T>
+struct JointRates {
+  T of[most_rotors];
+
+  QUADCORE_LAW void read(const Bodies<T>& bodies) {
+    for (std::size_t i = 1; i < bodies.size(); ++i) of[i - 1] = bodies.joint_rate(i);
+  }
+};
+
 /// Motion of the i-th rotors, see laws/rotor_forces.hpp.
 template <class T>
 struct MovingRotor : HingedRotor<T, Lanes::vehicles> {
-  QUADCORE_LAW MovingRotor(const Bodies<T>& bodies, const HingedFrame<T>& frame, std::size_t i)
-      : HingedRotor<T, Lanes::vehicles>{bodies, frame, i} {}
+  const JointRates<T>& rates;
 
+  QUADCORE_LAW MovingRotor(const Bodies<T>& bodies, const HingedFrame<T>& frame,
+                           const JointRates<T>& of_rotors, std::size_t i)
+      : HingedRotor<T, Lanes::vehicles>{bodies, frame, i}, rates(of_rotors) {}
+
+  QUADCORE_LAW T rate() const { return rates.of[this->i]; }
   QUADCORE_LAW Vec3<T> in_frame(const Vec3<T>& f_R) const {
     const Vec3<T> x = this->x_F(), y = this->y_F(), z = this->normal_F();
     return Matrix3<T>{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z} * f_R;
@@ -50,7 +64,7 @@ struct MovingRotor : HingedRotor<T, Lanes::vehicles> {
 
 template <class T>
 QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodies,
-                       const HingedFrame<T>& frame) {
+                       const HingedFrame<T>& frame, const JointRates<T>& rates) {
   const Table<T> constants{at.constants}, motors{at.motors};
   bodies.clear_forces();
   const Vec3<T> none{T{}, T{}, T{}};
@@ -71,7 +85,7 @@ QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodie
             laws::airframe_torque(k, center.v_WCcm_F, frame.w_WF_F);
   }
   for (std::size_t i = 0; i < block.rotors; ++i) {
-    const MovingRotor<T> rotor(bodies, frame, i);
+    const MovingRotor<T> rotor(bodies, frame, rates, i);
     laws::RotorLoads<T> loads{none, none, T{}};
     laws::add_rotor_forces(laws_of_rotors(block.laws, constants, i), rotor, loads);
     const T rate = rotor.rate();
@@ -103,12 +117,13 @@ QUADCORE_LAW T distance_ahead(const Block& block, const HingedFrame<T>& frame, T
 /// which will not come near the ground soon.
 template <class T>
 QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
-                              const HingedFrame<T>& frame, std::size_t first, double dt) {
+                              const HingedFrame<T>& frame, const JointRates<T>& rates,
+                              std::size_t first, double dt) {
   const Bounds& bounds = block.bounds;
   Mask<T> good = ~Mask<T>{};
   const Mask<T> spins = laws::load_bits<T>(block.may_spin + first);
   for (std::size_t i = 0; i < block.rotors; ++i) {
-    good &= mask<T>(laws::absolute(bodies.joint_rate(i + 1)) < bounds.fastest) | spins;
+    good &= mask<T>(laws::absolute(rates.of[i]) < bounds.fastest) | spins;
   }
   if (bounds.has_ground) {
     const T z = bodies.state(0).number(BodyRow::position + 2);
@@ -116,48 +131,51 @@ QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
     good &= mask<T>(z >= bounds.reach + distance_ahead(block, frame, laws::absolute(v_z), dt));
   }
   if (!bounds.no_tilt) return good;
-  const Matrix3<T>& R = frame.R_WF;
-  const Vec3<T> up_F{R.zx, R.zy, R.zz};
+  // Plugins transform the normal to the frame and back, which rounds it.
+  constexpr double surely_up = 1e-12;
   for (std::size_t i = 0; i < block.rotors; ++i) {
-    const MovingRotor<T> rotor(bodies, frame, i);
-    good &= mask<T>(laws::dot(up_F, rotor.normal_F()) >= 0) |
+    good &= mask<T>(bodies.work(i + 1).R_WB.zz >= surely_up) |
             laws::load_bits<T>(block.may_tilt + first);
   }
   return good;
 }
 
 template <class T>
-QUADCORE_LAW Outcome<T> outcome(const Bodies<T>& bodies) {
+QUADCORE_LAW Outcome<T> outcome(const Bodies<T>& bodies, const JointRates<T>& rates) {
   const auto square = [&](std::size_t row) QUADCORE_INLINED {
     const Vec3<T> a = bodies.state(0).vector(row);
     return laws::dot(a, a);
   };
-  T rates{};
-  for (std::size_t i = 1; i < bodies.size(); ++i) {
-    const T rate = bodies.joint_rate(i);
-    rates = rates + rate * rate;
-  }
-  return {square(BodyRow::position), square(BodyRow::velocity), square(BodyRow::rate), rates};
+  T sum{};
+  for (std::size_t i = 1; i < bodies.size(); ++i) sum = sum + rates.of[i - 1] * rates.of[i - 1];
+  return {square(BodyRow::position), square(BodyRow::velocity), square(BodyRow::rate), sum};
 }
 
 template <class T>
 QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count, double dt) {
   const Places<T> at(block, first);
   const std::size_t numbers = HingedRow::state(block.rotors) * widest_lanes;
-  const auto copy = [&](const double* from, double* to, const Mask<T>& flies) QUADCORE_INLINED {
+  const auto copy = [&](const double* from, double* to) QUADCORE_INLINED {
     for (std::size_t row = 0; row < numbers; row += widest_lanes) {
-      laws::store(to + row,
-                  laws::chosen_by(flies, laws::load<T>(from + row), laws::load<T>(to + row)));
+      laws::store(to + row, laws::load<T>(from + row));
     }
   };
-  copy(at.state, at.moved, ~Mask<T>{});
+  const auto copy_some = [&](const double* from, double* to, const Mask<T>& some) QUADCORE_INLINED {
+    for (std::size_t row = 0; row < numbers; row += widest_lanes) {
+      laws::store(to + row,
+                  laws::chosen_by(some, laws::load<T>(from + row), laws::load<T>(to + row)));
+    }
+  };
+  copy(at.state, at.moved);
   Bodies<T> bodies = at.bodies(block, at.moved);
   bodies.read();
+  JointRates<T> rates;
+  rates.read(bodies);
   Mask<T> flies = laws::load_bits<T>(block.flies + first);
   Mask<T> steps = laws::load_bits<T>(block.steps + first);
   for (std::int64_t n = 0; n < count; ++n) {
     const HingedFrame<T> frame(bodies);
-    flies &= is_quiet(block, bodies, frame, first, dt);
+    flies &= is_quiet(block, bodies, frame, rates, first, dt);
     if (block.clear) {
       const Vec3<T> v_W = bodies.state(0).vector(BodyRow::velocity);
       const T ahead = distance_ahead(block, frame, laws::square_root(laws::dot(v_W, v_W)), dt);
@@ -165,16 +183,20 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
           stays_clear(block, first, bodies.state(0).vector(BodyRow::position), ahead, steps, count);
     }
     if (!laws::any(flies)) break;
-    push(block, at, bodies, frame);
+    push(block, at, bodies, frame, rates);
     bodies.turn_inertias(true);
     flies &= mask<T>(bodies.read_hinges(dt) <= bodies.max_correction_squared());
     bodies.advance(dt);
     bodies.read();
-    flies &= is_sound(block.bounds, outcome(bodies));
+    rates.read(bodies);
+    flies &= is_sound(block.bounds, outcome(bodies, rates));
     steps -= flies;
-    copy(at.moved, at.state, flies);
-    add_rates<T>(block, first, flies,
-                 [&](std::size_t i) QUADCORE_INLINED { return bodies.joint_rate(i + 1); });
+    if (laws::any(~flies)) {
+      copy_some(at.moved, at.state, flies);
+    } else {
+      copy(at.moved, at.state);
+    }
+    add_rates<T>(block, first, flies, [&](std::size_t i) QUADCORE_INLINED { return rates.of[i]; });
   }
   laws::store_bits<T>(block.steps + first, steps);
 }
@@ -196,6 +218,8 @@ void show_hinged_block(const Block& block, double* shown) {
     Bodies<T> bodies = at.bodies(block, at.state);
     bodies.read();
     const HingedFrame<T> frame(bodies);
+    JointRates<T> rates;
+    rates.read(bodies);
     const auto put = [&](std::size_t row, T a)
                          QUADCORE_INLINED { laws::store(shown + first + row * widest_lanes, a); };
     const auto put3 = [&](std::size_t row, const Vec3<T>& a)
@@ -207,7 +231,7 @@ void show_hinged_block(const Block& block, double* shown) {
     put3(StateRow::velocity, frame.R_WF * frame.v_WF_F);
     put3(StateRow::rate, frame.w_WF_F);
     for (std::size_t i = 0; i < block.rotors; ++i) {
-      const MovingRotor<T> rotor(bodies, frame, i);
+      const MovingRotor<T> rotor(bodies, frame, rates, i);
       put(StateRow::joint(StateRow::joint_rate, i), rotor.rate());
       put3(TurnedRow::rotor(TurnedRow::axis_F, i, block.rotors), rotor.axis_F());
       put3(TurnedRow::rotor(TurnedRow::R_FR, i, block.rotors), rotor.x_F());
