@@ -140,9 +140,9 @@ void show_hinged(const HingedFlight& flight, const ShownFlight& shown) {
   const Bodies<W> bodies = bodies_of<W>(flight);
   const HingedFrame<T> frame(bodies);
   const Matrix3<T>& R = frame.R_WF;
-  for (std::size_t k = 0; k < 4; ++k) {
-    shown.frame[FrameNumber::q_WF + k] = flight.state[(BodyRow::orientation + k) * widest_lanes];
-  }
+  const double* const q = flight.state + BodyRow::orientation * widest_lanes;
+  laws::store(shown.frame + FrameNumber::q_WF,
+              laws::Four{q[0], q[widest_lanes], q[2 * widest_lanes], q[3 * widest_lanes]});
   store_one(shown.frame + FrameNumber::R_WF, Vec3<T>{R.xx, R.yx, R.zx});
   store_one(shown.frame + FrameNumber::R_WF + 3, Vec3<T>{R.xy, R.yy, R.zy});
   store_one(shown.frame + FrameNumber::R_WF + 6, Vec3<T>{R.xz, R.yz, R.zz});

@@ -163,6 +163,7 @@ bool HingedVehicle::push(const LawViews& laws, Kinematics& shown) {
 
 void HingedVehicle::show(Kinematics& k) const {
   calls_.show(flight_, {k.numbers(), k.rotors.data()});
+  if (calls_.width > 1) return;  // all hinges are on the frame
   for (std::size_t i = 0; i < k.rotors.size(); ++i) {
     const std::size_t carrier = model_.carriers[rotors_[i] + 1];
     if (carrier == 0) continue;  // the carrier also turns

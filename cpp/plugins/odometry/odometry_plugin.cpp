@@ -42,6 +42,10 @@ class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, k
   }
 
   void sense(const Sample& sample, PluginState state) const override {
+    if (is_perfect_) {
+      if (!is_due(sample, state)) return;
+      return sample.topics.publish(channel().topic(), sample.time, truth(sample.kinematics));
+    }
     if (!seed_) return MountedSensor::sense(sample, state);
     Sample seeded = sample;
     seeded.seed = *seed_;
@@ -77,7 +81,6 @@ class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, k
   std::optional<messages::Odometry> measure(const Sample& sample,
                                             PluginState memory) const override {
     std::optional<messages::Odometry> message = truth(sample.kinematics);
-    if (is_perfect_) return message;
     const double since = sample.jumped ? 0 : sample.time - memory[kTime];
     memory[kTime] = sample.time;
     errors_.apply(*message, since, sample.seed, memory[kDraws], &memory[kBiases]);

@@ -21,7 +21,7 @@ class MountedSensor : public Plugin {
 
   void sense(const Sample& sample, PluginState state) const override {
     PluginState on_the_way(state.data() + kMemory + N, state.size() - kMemory - N);
-    if (rate_.is_due(sample, state[kSamples])) {
+    if (is_due(sample, state)) {
       const std::optional<Message> message =
           measure(sample, PluginState(state.data() + kMemory, N));
       if (message) {
@@ -37,6 +37,11 @@ class MountedSensor : public Plugin {
   /// Return the pose in the frame of the link that the tag `link` names.
   static Pose mounting(const PluginSetup& setup) {
     return setup.model.pose_of_link.at(setup.parameters.choice("link"));
+  }
+
+  /// Return whether the sensor measures now, once for each sample.
+  bool is_due(const Sample& sample, PluginState state) const {
+    return rate_.is_due(sample, state[kSamples]);
   }
 
   /// \param memory  N numbers, zero at the start
