@@ -3,6 +3,7 @@
 #include "body_work.hpp"
 #include "hinge_angle.hpp"
 #include "hinged_tree.hpp"
+#include "lanes/four.hpp"
 #include "lanes/table.hpp"
 #include "laws/turned_by.hpp"
 #include "quadcore/plugin/rotor_layout.hpp"
@@ -63,6 +64,19 @@ class HingedBodies {
     } else {
       sum = sum + numbers;
     }
+  }
+  /// Add four numbers of the bodies of a pack to a, b, c and d of their carrier.
+  QUADCORE_LAW void add_to_carrier(std::size_t body, T& a, T& b, T& c, T& d, T to_a, T to_b, T to_c,
+                                   T to_d) const {
+    if constexpr (are_rotors && laws::lanes_of<T> == 4) {
+      if (used_lanes(body) == 4) {
+        return laws::add_lanes_backwards(a, b, c, d, to_a, to_b, to_c, to_d);
+      }
+    }
+    add_to_carrier(body, a, to_a);
+    add_to_carrier(body, b, to_b);
+    add_to_carrier(body, c, to_c);
+    add_to_carrier(body, d, to_d);
   }
 
   /// Compute the geometry of the bodies.
@@ -253,10 +267,10 @@ class HingedBodies {
     }
     force.angular = force.angular - body.torque * body.axis_W;
     BodyWork<T>& parent = work(carrier(i));
-    const auto add = [&](T& sum, const T& number)
-                         QUADCORE_INLINED { add_to_carrier(i, sum, number); };
-    laws::for_each(parent.carried, felt, add);
-    laws::for_each(parent.borne, force, add);
+    const auto add = [&](auto&&... sums_and_numbers)
+                         QUADCORE_INLINED { add_to_carrier(i, sums_and_numbers...); };
+    laws::for_each_four(parent.carried, felt, add);
+    laws::for_each_four(parent.borne, force, add);
   }
 
   QUADCORE_LAW void eliminate_rows(std::size_t i, double dt, laws::SpatialInertia<T>& felt,

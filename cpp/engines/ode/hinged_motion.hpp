@@ -64,14 +64,11 @@ struct HingedCenter {
     for (std::size_t i = bodies.size(); i-- > 1;) {
       const HingedRotor<T, lanes> rotor{bodies, frame, i - 1};
       const T of_rotor = bodies.constants(i).number(BodyConstant::mass);
-      const auto add = [&](Vec3<T>& sum, const Vec3<T>& a) QUADCORE_INLINED {
-        bodies.add_to_carrier(i, sum.x, of_rotor * a.x);
-        bodies.add_to_carrier(i, sum.y, of_rotor * a.y);
-        bodies.add_to_carrier(i, sum.z, of_rotor * a.z);
-      };
-      bodies.add_to_carrier(i, mass, of_rotor);
-      add(p_F, rotor.p_FRcm_F());
-      add(v_F, rotor.velocity_F(false));
+      const Vec3<T> p = of_rotor * rotor.p_FRcm_F(), v = of_rotor * rotor.velocity_F(false);
+      bodies.add_to_carrier(i, mass, p_F.x, p_F.y, p_F.z, of_rotor, p.x, p.y, p.z);
+      bodies.add_to_carrier(i, v_F.x, v.x);
+      bodies.add_to_carrier(i, v_F.y, v.y);
+      bodies.add_to_carrier(i, v_F.z, v.z);
     }
     const T by = 1 / mass;
     p_FCcm_F = by * p_F;

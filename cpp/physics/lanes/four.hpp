@@ -94,6 +94,22 @@ QUADCORE_LAW Rotation rotation(const Four& q) {
           columns(diagonal, by_after - w_next, by_next + w_after)};
 }
 
+/// Add the lanes of four packs, the last first, to four sums that each fill a pack.
+QUADCORE_LAW void add_lanes_backwards(Four& a, Four& b, Four& c, Four& d, const Four& to_a,
+                                      const Four& to_b, const Four& to_c, const Four& to_d) {
+  const Four ab_02 = chosen<0, 4, 2, 6>(to_a, to_b), ab_13 = chosen<1, 5, 3, 7>(to_a, to_b);
+  const Four cd_02 = chosen<0, 4, 2, 6>(to_c, to_d), cd_13 = chosen<1, 5, 3, 7>(to_c, to_d);
+  Four sum{a[0], b[0], c[0], d[0]};
+  sum = sum + chosen<2, 3, 6, 7>(ab_13, cd_13);
+  sum = sum + chosen<2, 3, 6, 7>(ab_02, cd_02);
+  sum = sum + chosen<0, 1, 4, 5>(ab_13, cd_13);
+  sum = sum + chosen<0, 1, 4, 5>(ab_02, cd_02);
+  a = permuted<0, 0, 0, 0>(sum);
+  b = permuted<1, 1, 1, 1>(sum);
+  c = permuted<2, 2, 2, 2>(sum);
+  d = permuted<3, 3, 3, 3>(sum);
+}
+
 /// Return sum plus the vectors of a pack of rotors, added in order.
 template <class T>
 QUADCORE_LAW void add_in_order(Four& sum, const Vec3<T>& of_rotors) {

@@ -95,6 +95,29 @@ QUADCORE_LAW void for_each(SpatialInertia<T>& a, const SpatialInertia<T>& b, con
   for_each(a.inertia, b.inertia, f);
 }
 
+/// Call f(a_i, a_i+1, a_i+2, a_i+3, b_i, b_i+1, b_i+2, b_i+3) for four pairs of numbers at a time,
+/// and f(a_i, b_i) for the last ones.
+template <class T, class Function>
+QUADCORE_LAW void for_each_four(Spatial<T>& a, const Spatial<T>& b, const Function& f) {
+  f(a.linear.x, a.linear.y, a.linear.z, a.angular.x, b.linear.x, b.linear.y, b.linear.z,
+    b.angular.x);
+  f(a.angular.y, b.angular.y), f(a.angular.z, b.angular.z);
+}
+template <class T, class Function>
+QUADCORE_LAW void for_each_four(SpatialInertia<T>& a, const SpatialInertia<T>& b,
+                                const Function& f) {
+  Symmetric3<T>&m = a.mass, &I = a.inertia;
+  const Symmetric3<T>&n = b.mass, &J = b.inertia;
+  Matrix3<T>& c = a.coupling;
+  const Matrix3<T>& d = b.coupling;
+  f(m.xx, m.xy, m.xz, m.yy, n.xx, n.xy, n.xz, n.yy);
+  f(m.yz, m.zz, c.xx, c.xy, n.yz, n.zz, d.xx, d.xy);
+  f(c.xz, c.yx, c.yy, c.yz, d.xz, d.yx, d.yy, d.yz);
+  f(c.zx, c.zy, c.zz, I.xx, d.zx, d.zy, d.zz, J.xx);
+  f(I.xy, I.xz, I.yy, I.yz, J.xy, J.xz, J.yy, J.yz);
+  f(I.zz, J.zz);
+}
+
 /// Return the inertia of a body with its centre of mass at p from O and the inertia I about it.
 template <class T>
 QUADCORE_LAW SpatialInertia<T> body_inertia(T mass, const Vec3<T>& p, const Symmetric3<T>& I) {
