@@ -105,10 +105,7 @@ void LaneControls::call(double step, double period, const double* shown) {
   measure(step, shown);
   read_references(step);
   command(period);
-  for (const Follower* follower : followers_) {
-    saturated_[follower->lane()] +=
-        state_.at(control::ActuationRow::saturated, follower->lane()) != 0;
-  }
+  state_.add_row(control::ActuationRow::saturated, saturated_);
 }
 
 void LaneControls::measure(double step, const double* shown) {
@@ -188,7 +185,7 @@ void LaneControls::finish() const {
     const std::size_t lane = follower->lane();
     BatchGuided& guided = *follower->guided;
     guided.calls = calls_;
-    guided.saturated = saturated_[lane];
+    guided.saturated = static_cast<std::int64_t>(saturated_[lane]);
     for (const double seconds : seconds_) {
       guided.seconds.push_back(seconds / static_cast<double>(followers_.size()));
     }

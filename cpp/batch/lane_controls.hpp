@@ -62,8 +62,8 @@ class LaneControls {
   PackTable asked_, in_effect_;  ///< commands of the last call, and those in effect
   LaneNumbers variation_;        ///< of the commands in effect, see Commands
   std::uint64_t seeds_[widest_lanes] = {}, begins_[widest_lanes] = {};
-  std::int64_t belong_[widest_lanes] = {};     ///< -1 for each vehicle of this group
-  std::int64_t saturated_[widest_lanes] = {};  ///< saturated calls
+  std::int64_t belong_[widest_lanes] = {};  ///< -1 for each vehicle of this group
+  double saturated_[widest_lanes] = {};     ///< number of saturated calls
   std::int64_t calls_ = 0;
   std::vector<double> seconds_;  ///< durations of some calls of all controllers
   bool has_begun_ = false, has_commanded_ = false;

@@ -10,7 +10,6 @@ class PackTable {
   PackTable(int width, std::size_t rows)
       : width_(static_cast<std::size_t>(width)), rows_(rows), numbers_(rows * widest_lanes) {}
 
-  double& at(std::size_t row, std::size_t lane) { return first(lane)[row * width_]; }
   double* data() { return numbers_.data(); }
   std::size_t size() const { return numbers_.size(); }
   /// Convert to and from the numbers of one vehicle.
@@ -21,6 +20,13 @@ class PackTable {
   void get(std::size_t lane, double* column) const {
     const double* const from = &numbers_[offset(lane)];
     for (std::size_t row = 0; row < rows_; ++row) column[row] = from[row * width_];
+  }
+  /// Add a row to numbers of all vehicles.
+  void add_row(std::size_t row, double* sums) const {
+    for (std::size_t part = 0; part < widest_lanes / width_; ++part) {
+      const double* const from = &numbers_[(part * rows_ + row) * width_];
+      for (std::size_t i = 0; i < width_; ++i) *sums++ += from[i];
+    }
   }
   /// Set the numbers of all vehicles.
   void fill(const double* column);

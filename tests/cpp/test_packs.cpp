@@ -1,96 +1,98 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
-#include <vector>
 
-#include "lanes/arc_tangent.hpp"
-#include "quadcore/plugin/elementary.hpp"
-#include "quadcore/plugin/random.hpp"
+#include "lanes/mask.hpp"
+#include "laws/motor_target.hpp"
+#include "laws/variation.hpp"
 
 namespace {
 
-template <int W>
-void read_and_write_everywhere() {
-  alignas(64) double from[3 * W];
-  alignas(64) double to[3 * W];
-  for (int i = 0; i < 3 * W; ++i) from[i] = i;
-  for (int begin = 0; begin < W; ++begin) {
-    const int end = 2 * W - begin;
-    quadcore::laws::store(to + end, quadcore::laws::load<quadcore::laws::Pack<W>>(from + begin));
-    for (int i = 0; i < W; ++i) CHECK(to[end + i] == begin + i);
-  }
-}
+namespace laws = quadcore::laws;
+using quadcore::widest_lanes;
 
-double from_pattern(std::uint64_t pattern) {
-  double number;
-  std::memcpy(&number, &pattern, sizeof number);
-  return number;
-}
-
-/// Coordinates of points in all directions, with special values.
-struct Points {
-  std::vector<double> x, y;
-
-  Points() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double special[] = {0,      -0.0,   1,        -1,          0.4375, 0.6875,
-                              1.1875, 2.4375, infinity, -infinity,   5e-324, 1e-300,
-                              1e300,  1e18,   1e19,     std::nan("")};
-    for (const double of_x : special) {
-      for (const double of_y : special) add(of_x, of_y);
-    }
-    for (std::uint64_t i = 0; i < 40000; ++i) {
-      const std::uint64_t a = quadcore::random_bits(1, i), b = quadcore::random_bits(2, i);
-      add(from_pattern(a), from_pattern(b));  // of any size
-      const auto near = [](std::uint64_t bits) { return std::ldexp(double(bits), -63) - 1; };
-      add(near(a), near(b));
-    }
-  }
-  void add(double of_x, double of_y) {
-    x.push_back(of_x);
-    y.push_back(of_y);
-  }
-};
-
-bool are_equal(double a, double b) {
-  return std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b));
-}
-
-template <int W>
-void compare_angles_with_single_ones(const Points& points) {
-  using T = quadcore::laws::Pack<W>;
-  std::size_t equal = 0;
-  for (std::size_t i = 0; i + W <= points.x.size(); i += W) {
-    double angles[W], sines[W];
-    const T x = quadcore::laws::load<T>(&points.x[i]), y = quadcore::laws::load<T>(&points.y[i]);
-    quadcore::laws::store(angles, quadcore::laws::arc_tangent(y, x));
-    quadcore::laws::store(sines, quadcore::laws::arc_sine(x));
-    for (int k = 0; k < W; ++k) {
-      const double of_x = points.x[i + k], of_y = points.y[i + k];
-      equal += are_equal(angles[k], quadcore::elementary::atan2(of_y, of_x)) &&
-               are_equal(sines[k], quadcore::elementary::asin(of_x));
-    }
-  }
-  CHECK(equal == points.x.size());
-}
-
-TEST_CASE("arc tangents and arc sines of packs are bit-identical to those of single numbers") {
-  const Points points;
-  REQUIRE(points.x.size() % 8 == 0);
-  compare_angles_with_single_ones<1>(points);
-  compare_angles_with_single_ones<2>(points);
-  compare_angles_with_single_ones<4>(points);
-  compare_angles_with_single_ones<8>(points);
+/// Call test(width) with each width as a constant.
+template <class Test>
+void for_each_width(const Test& test) {
+  test(std::integral_constant<int, 1>());
+  test(std::integral_constant<int, 2>());
+  test(std::integral_constant<int, 4>());
+  test(std::integral_constant<int, 8>());
 }
 
 TEST_CASE("packs are read and written wherever numbers lie") {
-  read_and_write_everywhere<1>();
-  read_and_write_everywhere<2>();
-  read_and_write_everywhere<4>();
-  read_and_write_everywhere<8>();
+  for_each_width([](auto width) {
+    constexpr int W = width;
+    alignas(64) double from[3 * W];
+    alignas(64) double to[3 * W];
+    for (int i = 0; i < 3 * W; ++i) from[i] = i;
+    for (int begin = 0; begin < W; ++begin) {
+      const int end = 2 * W - begin;
+      laws::store(to + end, laws::load<laws::Pack<W>>(from + begin));
+      for (int i = 0; i < W; ++i) CHECK(to[end + i] == begin + i);
+    }
+  });
+}
+
+TEST_CASE("a pack of one number keeps its sign and bits") {
+  for_each_width([](auto width) {
+    for (const double number : {-0.0, 0.1, -std::numeric_limits<double>::infinity()}) {
+      double numbers[width];
+      laws::store(numbers, laws::broadcast<laws::Pack<width>>(number));
+      for (const double stored : numbers) {
+        CHECK(stored == number);
+        CHECK(std::signbit(stored) == std::signbit(number));
+      }
+    }
+  });
+}
+
+TEST_CASE("a number that is not finite is found in every lane") {
+  for_each_width([](auto width) {
+    using T = laws::Pack<width>;
+    double numbers[width] = {};
+    const auto are_not_finite = [&] {
+      return ~laws::mask<T>(laws::is_finite(laws::load<T>(numbers)));
+    };
+    CHECK_FALSE(laws::any(are_not_finite()));
+    for (double& number : numbers) {
+      for (const double wrong : {std::nan(""), -std::numeric_limits<double>::infinity()}) {
+        number = wrong;
+        std::int64_t found[width];
+        laws::store_bits<T>(found, are_not_finite());
+        CHECK(laws::any(are_not_finite()));
+        for (int i = 0; i < width; ++i) CHECK(found[i] == -std::int64_t{&numbers[i] == &number});
+      }
+      number = 0;
+    }
+  });
+}
+
+TEST_CASE("targets of motors stay within the maximum speed") {
+  for_each_width([](auto width) {
+    using T = laws::Pack<width>;
+    for (const double command : {-900.0, -800.0, -0.0, 300.0, 1e9}) {
+      double targets[width];
+      laws::store(targets, laws::motor_target(laws::broadcast<T>(command), laws::broadcast<T>(800),
+                                              laws::broadcast<T>(10)));
+      for (const double target : targets) CHECK(target == std::clamp(command, -800.0, 800.0) / 10);
+    }
+  });
+}
+
+TEST_CASE("the variation of a number is the sum of the changes of its magnitude") {
+  for_each_width([](auto width) {
+    using T = laws::Pack<width>;
+    double rows[laws::VariationRow::count * widest_lanes] = {};
+    laws::begin_variation(rows, laws::broadcast<T>(-3));
+    for (const double number : {3.0, 5.0, -1.0})
+      laws::add_variation(rows, laws::broadcast<T>(number));
+    for (int i = 0; i < width; ++i) {
+      CHECK(rows[laws::VariationRow::sum * widest_lanes + static_cast<std::size_t>(i)] == 6);
+    }
+  });
 }
 
 }  // namespace
