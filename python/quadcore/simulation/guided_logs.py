@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..formats.rows import Topics, split_columns
 from .controller_pilot import ControllerPilot
-from .flight import list_columns
 from .log import Log
 from .simulation import Simulation
 from .trajectory import per_command
@@ -24,18 +24,19 @@ class GuidedLogs:
 
     def __init__(self, simulation: Simulation, pilot: ControllerPilot) -> None:
         self._pilot = pilot
-        self._columns = list_columns(simulation, (), pilot)
         self._ignored = simulation.ignored
         self._per_command = per_command(simulation)
         self._wanted = np.empty((0, 0))
 
     def make(self, table: np.ndarray) -> Log:
-        """Make the log of a flight from the rows of its state."""
+        """Make the log of a flight from the rows of its state, which it keeps."""
+        topics: Topics = {}
         if self._pilot.columns:
             if len(self._wanted) < len(table):
                 self._wanted = self._pilot.sample(table[:, 0])
             wanted = self._wanted[: len(table)]
-            table = np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
-        log = Log.of_rows(table, self._columns, {}, self._ignored)
+            followed = np.hstack([wanted, table[:, 1:4] - wanted[:, :3]])
+            _, topics = split_columns(self._pilot.columns, followed)
+        log = Log(table, ignored=self._ignored, topics=topics)
         log.per_command = self._per_command
         return log
