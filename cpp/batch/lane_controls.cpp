@@ -137,11 +137,13 @@ void LaneControls::read_references(double step) {
     const auto wanted = control::numbers_of(point);
     const auto* const column = reinterpret_cast<const double*>(&wanted);
     const bool feeds = guide.controller->feeds() != control::WrenchController::Feeds::nothing;
-    if (&followed == &followed_.front()) wanted_.fill(column);
-    for (Follower* follower : followed.followers) {
-      if (&followed != &followed_.front()) wanted_.put(follower->lane(), column);
-      if (feeds && !point.flat) follower->leave(lanes_);
+    if (&followed == &followed_.front()) {
+      wanted_.fill(column);  // also the unused vehicles
+    } else {
+      for (const Follower* follower : followed.followers) wanted_.put(follower->lane(), column);
     }
+    if (!feeds || point.flat) continue;
+    for (Follower* follower : followed.followers) follower->leave(lanes_);
   }
 }
 
