@@ -42,11 +42,9 @@ void ControlLoop::finish() {
 }
 
 void ControlLoop::list_times(double* times, std::size_t count) const {
-  double step = step_;
-  for (std::size_t i = 0; i < count; ++i) {
-    times[i] = simulation_.time_after(step - step_);
-    step = schedule_.next_call(step, simulation_.dt());
-  }
+  schedule_.list_calls(step_, simulation_.dt(), times, count);
+  std::transform(times, times + count, times,
+                 [this](double step) { return simulation_.time_after(step - step_); });
 }
 
 }  // namespace quadcore::control

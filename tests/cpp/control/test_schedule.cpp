@@ -131,3 +131,20 @@ TEST_CASE("the next call is that of a search step by step, at once for slow rate
   }
   CHECK(Schedule(1e-6, 0, 1).next_call(0, 1e-6) == doctest::Approx(1e12));
 }
+
+TEST_CASE("the listed calls are those that follow one by one") {
+  const double dt = 1e-3;
+  for (const double rate : {0.3, 333.3, 500.0, 999.9, 1000.0, 1000.1, 1700.0, 2500.0, 1e9}) {
+    CAPTURE(rate);
+    const Schedule schedule(rate, 0, 1);
+    double next = 0;
+    for (int list = 0; list < 500; ++list) {
+      double calls[8];
+      schedule.list_calls(next, dt, calls, 8);
+      for (const double call : calls) {
+        CHECK(call == next);
+        next = schedule.next_call(next, dt);
+      }
+    }
+  }
+}

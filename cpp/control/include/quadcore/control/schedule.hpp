@@ -18,6 +18,7 @@ class Schedule {
   /// \param delay  from a call to the step at which its command acts [s]
   Schedule(double rate, double delay, std::size_t rotors)
       : rate_(rate),
+        period_(1 / rate),
         delay_(delay),
         rotors_(rotors),
         places_(static_cast<std::size_t>(std::ceil(delay * rate)) + 2) {}
@@ -40,8 +41,8 @@ class Schedule {
       state[kAsked] = due;
       double* const order = place(state, state[kSent]);
       // The first command acts at once, because no other command precedes it.
-      order[0] = step + (step > 0 ? std::max(std::ceil(delay_ / dt - rounding), 0.0) : 0);
-      ask(std::max(1 / rate_, dt), order + 1);  // at most one call per step
+      order[0] = step > 0 && delay_ > 0 ? step + count_delayed(dt) : step;
+      ask(std::max(period_, dt), order + 1);  // at most one call per step
       state[kSent] += 1;
     }
     const double* arrived = nullptr;
@@ -56,17 +57,22 @@ class Schedule {
 
   /// Return the step of the first call after a step.
   double next_call(double step, double dt) const {
+    return next_call(step, dt, count_due(step, dt));
+  }
+
+  /// Write the step of a call and those of the next ones, `count` in all.
+  void list_calls(double step, double dt, double* steps, std::size_t count) const {
+    // Rates above one call per step skip calls; the steps are consecutive then.
     const double due = count_due(step, dt);
-    // Rounding may put the quotient next to the right step, not further away.
-    double next = std::max(step + 1, whole((due - rounding) / (rate_ * dt)) + 1);
-    while (next > step + 1 && count_due(next - 1, dt) != due) next -= 1;
-    while (count_due(next, dt) == due) next += 1;
-    return next;
+    for (std::size_t i = 0; i < count; ++i) {
+      steps[i] = step;
+      step = next_call(step, dt, due + static_cast<double>(i));
+    }
   }
 
   /// Return the first step after an updated one at which a call is due or a command takes effect.
   double next_event(double step, double dt, double* state) const {
-    const double call = next_call(step, dt);
+    const double call = next_call(step, dt, state[kAsked]);
     if (state[kSent] == state[kArrived]) return call;
     return std::min(call, place(state, state[kArrived])[0]);
   }
@@ -79,10 +85,21 @@ class Schedule {
   static constexpr double rounding = 1e-6;  ///< tolerance as a fraction of a period or a step
   static constexpr double most_exact = 9007199254740992.0;  ///< from here on all numbers are whole
 
+  /// Return the number of periods that have passed at a step.
+  double count_periods(double step, double dt) const { return step * (rate_ * dt) + rounding; }
   /// Return the number of calls that are due up to a step.
-  double count_due(double step, double dt) const {
-    return whole(step * (rate_ * dt) + rounding) + 1;
+  double count_due(double step, double dt) const { return whole(count_periods(step, dt)) + 1; }
+  /// Return the step of the first call after a step up to which so many calls were due.
+  double next_call(double step, double dt, double due) const {
+    const double steps_per_call = 1 / (rate_ * dt);
+    // Rounding may put the product next to the right step, not further away.
+    double next = std::max(step + 1, whole((due - rounding) * steps_per_call) + 1);
+    while (next > step + 1 && count_periods(next - 1, dt) >= due) next -= 1;
+    while (count_periods(next, dt) < due) next += 1;
+    return next;
   }
+  /// Return the number of steps from a call until its command acts.
+  double count_delayed(double dt) const { return std::max(std::ceil(delay_ / dt - rounding), 0.0); }
   /// Return the whole part of a positive number. Faster than std::floor() without SSE 4.1.
   static double whole(double number) {
     return number < most_exact ? static_cast<double>(static_cast<std::int64_t>(number)) : number;
@@ -92,7 +109,7 @@ class Schedule {
     return state + kUnderWay + ring_index(count, places_) * place_size();
   }
 
-  double rate_, delay_;
+  double rate_, period_, delay_;  ///< 1/s, s and s
   std::size_t rotors_, places_;
 };
 
