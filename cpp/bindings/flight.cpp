@@ -45,7 +45,8 @@ std::vector<std::string> columns(const Self& self, const std::vector<std::string
 
 std::unique_ptr<BoundFlight> create_flight(const Self& self, const py::object& commands,
                                            std::int64_t log_every, bool wrenches,
-                                           const std::vector<std::string>& topics) {
+                                           const std::vector<std::string>& topics,
+                                           std::size_t to_fill) {
   std::optional<Commands> table;
   if (!commands.is_none()) {
     const Numbers rows = numbers(commands, 2, "commands");
@@ -54,8 +55,9 @@ std::unique_ptr<BoundFlight> create_flight(const Self& self, const py::object& c
   }
   const Lock lock(*self);
   return std::make_unique<BoundFlight>(BoundFlight{
-      self.guarded, Flight(*self.operator->(), std::move(table), log_every, wrenches, topics),
-      static_cast<py::ssize_t>(columns(self, topics).size())});
+      self.guarded,
+      Flight(*self.operator->(), std::move(table), log_every, wrenches, topics, to_fill),
+      static_cast<py::ssize_t>(columns(self, topics).size() + to_fill)});
 }
 
 /// Returns the number of steps taken, or in a fleet the number until the next command.
@@ -107,13 +109,13 @@ void bind_flight(py::module_& m) {
   py::class_<BoundFlight>(m, "Flight", "Logged run that is advanced in pieces.")
       .def(py::init(&create_flight), py::arg("simulation"), py::arg("commands"),
            py::arg("log_every"), py::arg("wrenches") = true,
-           py::arg("topics") = std::vector<std::string>{})
+           py::arg("topics") = std::vector<std::string>{}, py::arg("to_fill") = 0)
       .def("advance", &advance, py::arg("n"),
            "Simulate n steps and return their number. In a fleet, publish the command that is due "
            "and return the number of steps until the next. Raises as `Simulation.step`.")
       .def("take", &take,
            "Return the rows logged since the last call: table (rows, columns) and wrenches (rows, "
-           "terms, 6), which are empty unless requested.");
+           "terms, 6). The last `to_fill` columns are NaN; wrenches are empty unless requested.");
 
   py::class_<Run>(m, "Run", "Context manager for the duration of a run.")
       .def(py::init<const Self&>(), py::arg("simulation"))

@@ -12,6 +12,7 @@ from vehicles import AIR, COM, MOTOR, Rotor, start, vehicle
 
 import quadcore as qc
 from quadcore import _core
+from quadcore.simulation import flight
 
 
 def test_a_hover_holds_height_by_its_odometry():
@@ -140,6 +141,20 @@ def test_a_log_begins_at_once_and_has_a_row_every_so_many_steps(log_every, rows)
     again = quadrotor()
     again.step(3)
     assert np.array_equal(again.run(0.1, MANOEUVRE).table[::log_every], log.table)
+
+
+def test_a_log_of_many_pieces_is_that_of_one(monkeypatch):
+    def log():
+        sim = quadrotor("eigen")
+        return sim.run(0.5, controller="geometric", reference="spiral", wrenches=True)
+
+    whole = log()
+    monkeypatch.setattr(flight, "_ROWS", 7)
+    pieces = log()
+    assert len(whole) == 501 and pieces.columns == whole.columns
+    assert pieces.table.tobytes() == whole.table.tobytes()
+    for name, wrench in whole.wrenches.items():
+        assert pieces.wrenches[name].tobytes() == wrench.tobytes()
 
 
 def test_a_run_ends_with_the_last_step_that_fits():

@@ -230,12 +230,12 @@ class ControllerPilot(ReferencePilot):
         reference = given.shape.at if isinstance(given, references.Shape) else given
         return CommandAll(self._controller, reference, n, self._limits)
 
-    def add_columns(self, table: np.ndarray) -> np.ndarray:
-        """Add the columns of the reference and of the controller to rows of the state."""
-        whole = super().add_columns(table)
-        if not self._own_columns.columns:
-            return whole
-        return np.hstack([whole, self._own_columns.sample(table[:, 0])])
+    def fill_columns(self, table: np.ndarray) -> None:
+        """Fill the columns of the reference and of the controller in rows of a log."""
+        super().fill_columns(table)
+        count = len(self._own_columns.columns)
+        if count:
+            table[:, -count:] = self._own_columns.sample(table[:, 0])
 
 
 def make_pilot(

@@ -16,8 +16,9 @@ from .commands import CommandsLike
 from .controller_pilot import make_pilot
 from .engines import check_wrenches
 from .fleet_flight import FlightOfVehicle, fly_fleet
-from .flight import Progress, Rows, list_columns
+from .flight import Progress, list_columns
 from .log import Log
+from .rows import Rows
 from .simulation import Simulation, check_source, start_on
 
 CommandsOfFleet = Union[CommandsLike, Mapping[str, Optional[CommandsLike]], None]

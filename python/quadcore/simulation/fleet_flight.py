@@ -7,8 +7,6 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any, List, Optional, Sequence
 
-import numpy as np
-
 from .. import _core
 from ..support import interrupts
 from .commands import CommandsLike, check_commands
@@ -92,7 +90,8 @@ class _Seat:
         if flight.commands is not None:
             table = check_commands(flight.commands, simulation.command_width)
         wrenches = flight.wrenches and len(simulation.wrench_terms) > 0
-        self.core = _core.Flight(simulation, table, log_every, wrenches, flight.topics)
+        to_fill = 0 if pilot is None else len(pilot.columns)
+        self.core = _core.Flight(simulation, table, log_every, wrenches, flight.topics, to_fill)
         self._prepare = self.core.advance if pilot is None else pilot.begin(simulation, self.core)
         self._flight, self._pilot = flight, pilot
 
@@ -107,16 +106,14 @@ class _Seat:
     def hand_over(self) -> None:
         """Pass the new rows on."""
         table, wrenches = self.core.take()
-        whole = table
-        if self._pilot is not None:
-            try:
-                whole = self._pilot.add_columns(table)
-            except BaseException as error:  # the states are valid even so
-                self._name(error)
-                added = np.full((len(table), len(self._pilot.columns)), np.nan)
-                self._flight.receive(np.hstack([table, added]), wrenches)
-                raise
-        self._flight.receive(whole, wrenches)
+        try:
+            if self._pilot is not None:
+                self._pilot.fill_columns(table)
+        except BaseException as error:
+            self._name(error)
+            raise
+        finally:  # the states are valid even without the columns of the pilot
+            self._flight.receive(table, wrenches)
 
     def _name(self, error: BaseException) -> None:
         error.vehicle = self._flight.name  # type: ignore[attr-defined]

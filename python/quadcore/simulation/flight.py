@@ -17,8 +17,6 @@ from ..support.user_code import describe_error
 from ..support.warning import warn
 from .commands import CommandsLike, check_commands
 from .engines import check_wrenches
-from .log import Log
-from .trajectory import per_command
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -28,7 +26,7 @@ Progress = Callable[[int, int], None]
 
 _LONGEST = 1e9  # s
 _PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
-_GROWTH = 16  # of a piece over the one before, at most
+_GROWTH = 256  # of a piece over the one before, at most
 _PACED = 0.04  # s of wall-clock time; longest piece of a flight at a pace
 _ROWS = 4096  # of a piece, at most; it stays in the cache until its rows are where they belong
 
@@ -66,9 +64,8 @@ class Pilot:
     def close(self) -> None:
         """Release what `reset` acquired; called once after every `reset`."""
 
-    def add_columns(self, table: np.ndarray) -> np.ndarray:
-        """Add the columns of the pilot to rows of a log."""
-        return table
+    def fill_columns(self, table: np.ndarray) -> None:
+        """Fill the columns of the pilot, which are the last ones of rows of a log."""
 
 
 def fly(
@@ -125,7 +122,8 @@ def fly(
         if pilot is not None:
             pilot.reset(simulation)  # which may yet put the vehicle where it is to begin
         with run:
-            flight = _core.Flight(simulation, table, log_every, wrenches, topics)
+            to_fill = 0 if pilot is None else len(pilot.columns)
+            flight = _core.Flight(simulation, table, log_every, wrenches, topics, to_fill)
             most = _ROWS * log_every
             if pace:
                 most = max(1, min(most, int(_PACED * pace / simulation.dt)))
@@ -139,6 +137,9 @@ class _Pace:
     def __init__(self, pace: float, dt: float) -> None:
         self._seconds_per_step = dt / pace if pace else 0.0
         self._began = time.monotonic()
+
+    def __bool__(self) -> bool:
+        return self._seconds_per_step > 0
 
     def wait(self, steps: int) -> None:
         """Wait until a number of steps is due."""
@@ -173,30 +174,28 @@ def _advance(
     pilot: Optional[Pilot],
     pace: _Pace,
 ) -> None:
-    """Simulate `total` steps in pieces of at most `most` steps."""
+    """Simulate `total` steps in pieces, and pass on the rows of at most `most` steps at once."""
     advance = flight.advance if pilot is None else pilot.begin(simulation, flight)
 
     def hand_over() -> None:
         with interrupts.hold_signals():
             table, wrenches = flight.take()
             try:
-                whole = (
-                    table
-                    if pilot is None
-                    else _call_with_time(simulation, pilot.add_columns, table)
-                )
-            except BaseException:  # the states are valid even so
-                beside = 0 if pilot is None else len(pilot.columns)
-                receive(np.hstack([table, np.full((len(table), beside), np.nan)]), wrenches)
-                raise
-            receive(whole, wrenches)
+                if pilot is not None:
+                    _call_with_time(simulation, pilot.fill_columns, table)
+            finally:  # the states are valid even without the columns of the pilot
+                receive(table, wrenches)
 
     done, steps, last_report = 0, 1, 0.0
+    rows_at, handed_over = 0, time.perf_counter()
     try:
         while done < total:
-            hand_over()
-            pace.wait(done)
             steps = min(steps, total - done, most)
+            is_late = time.perf_counter() - handed_over >= _PIECE
+            if pace or is_late or done + steps - rows_at > most:
+                hand_over()
+                rows_at, handed_over = done, time.perf_counter()
+            pace.wait(done)
             started = time.perf_counter()
             _call_with_time(simulation, advance, steps)
             done += steps
@@ -234,55 +233,6 @@ def list_columns(
     for name in set(topics) & {column.partition(".")[0] for column in of_pilot}:
         raise _core.InputError(f"topic '{name}': the log holds what is flown under this name")
     return columns + list(of_pilot)
-
-
-class Rows:
-    """Collector of the rows that `fly` passes on; if memory runs out, earlier rows stay."""
-
-    def __init__(self, simulation: _core.Simulation, columns: Sequence[str]) -> None:
-        self._columns = list(columns)
-        self._terms = simulation.wrench_terms
-        self._ignored = simulation.ignored
-        self._per_command = per_command(simulation)
-        self._count = 0
-        self._table = np.empty((0, len(self._columns)))
-        self._wrenches = np.empty((0, len(self._terms), 6))
-        self._with_wrenches = False
-
-    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Append a piece."""
-        end = self._count + len(table)
-        _grow(self._table, end)
-        self._table[self._count : end] = table
-        if len(wrenches):
-            self._with_wrenches = True
-            _grow(self._wrenches, end)
-            self._wrenches[self._count : end] = wrenches
-        self._count = end
-
-    def log(self) -> Log:
-        """Return the rows so far."""
-        wrenches = self._wrenches[: self._count]
-        named = {name: wrenches[:, i] for i, name in enumerate(self._terms)}
-        log = Log.of_rows(
-            self._table[: self._count],
-            self._columns,
-            named if self._with_wrenches else {},
-            self._ignored,
-        )
-        log.per_command = self._per_command
-        return log
-
-
-def _grow(array: np.ndarray, rows: int) -> None:
-    """Enlarge an array to at least `rows` rows, in place if possible."""
-    if rows <= len(array):
-        return
-    # resize() uses realloc, which moves large blocks without copying them.
-    try:
-        array.resize((rows + rows // 8, *array.shape[1:]), refcheck=False)
-    except MemoryError:
-        array.resize((rows, *array.shape[1:]), refcheck=False)
 
 
 def count_steps(duration: float, dt: float) -> int:

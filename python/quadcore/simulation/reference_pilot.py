@@ -45,12 +45,15 @@ class ReferencePilot(Pilot):
         self.columns = _COLUMNS if reference is not None else ()
         self._reference = reference
 
-    def add_columns(self, table: np.ndarray) -> np.ndarray:
-        """Add the columns of the reference to rows of the state."""
+    def fill_columns(self, table: np.ndarray) -> None:
+        """Fill the columns of the reference, the first ones of the pilot, in rows of a log."""
         if self._reference is None:
-            return table
+            return
         wanted = self.sample(table[:, 0])
-        return np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
+        own = table[:, -len(self.columns) :]
+        own[:, :4] = wanted
+        for axis in range(3):  # NumPy takes longer for rows of three numbers than for columns
+            np.subtract(table[:, 1 + axis], wanted[:, axis], out=own[:, 4 + axis])
 
     def sample(self, times: np.ndarray) -> np.ndarray:
         """Return position and yaw of the reference at times; shape (n, 4)."""

@@ -23,8 +23,9 @@ from ..support.values import SPAWN, Number, Value, check_pose, check_whole, form
 from ..support.warning import warn
 from .controller_pilot import make_pilot
 from .engines import ENGINE, EngineName, check_engine_and_step, find_added_engine
-from .flight import Progress, Rows, fly, list_columns
+from .flight import Progress, fly, list_columns
 from .log import Log
+from .rows import Rows
 from .state import LiveState
 
 if TYPE_CHECKING:

@@ -21,9 +21,10 @@ from ..report.page_server import PageServer, open_browser
 from ..report.player import PlayerFlight, make_page
 from ..support.arguments import shorten
 from ..support.output_files import atomic_write, check_writable, encode_text
-from .flight import Rows, list_columns
+from .flight import list_columns
 from .live_view import LiveView
 from .log import Log
+from .rows import Rows
 from .simulation import Simulation
 
 _HEIGHT = 760  # px, of the page in a notebook

@@ -13,9 +13,10 @@ from ..report.decimation import decimate
 from ..report.drawn_vehicle import DrawnVehicle
 from ..simulation.clearance import Clearance
 from ..simulation.controller_pilot import convert_controller_errors
-from ..simulation.flight import Rows, fly, list_columns
+from ..simulation.flight import fly, list_columns
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
+from ..simulation.rows import Rows
 from ..simulation.simulation import Simulation
 from ..support.warning import suppress_warnings
 from .controller_timing import summarise_durations

@@ -15,7 +15,7 @@ namespace quadcore QUADCORE_EXPORT {
 struct LogRows {
   std::int64_t count = 0;  ///< rows
   /// (count, columns) in row-major order with the columns of log_columns(): the state, then each
-  /// requested topic.
+  /// requested topic; then the columns that the caller fills.
   std::vector<double> table;
   /// (count, terms, 6) in row-major order with the terms of Simulation::wrench_terms(): force and
   /// torque in frame axes about the vehicle's centre of mass, acting from the logged state on.
@@ -28,10 +28,12 @@ struct LogRows {
 class Flight {
  public:
   /// Log the present state at once, then after every `log_every` steps.
-  /// \param topics  names of topics to log
+  /// \param topics   names of topics to log
+  /// \param to_fill  number of columns at the end of each row that are NaN until the caller fills
+  ///                 them
   /// Throws InputError if log_every < 1, or if a topic does not exist or is named twice.
   Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every,
-         bool wrenches, const std::vector<std::string>& topics = {});
+         bool wrenches, const std::vector<std::string>& topics = {}, std::size_t to_fill = 0);
 
   /// Simulate n steps, each with the command that is due at its start. Throws like step(); logged
   /// rows remain. The rates are those of Simulation::step().
@@ -59,6 +61,7 @@ class Flight {
   std::int64_t log_every_;
   bool log_wrenches_;
   std::vector<std::size_t> topics_;
+  std::size_t to_fill_;
   std::size_t row_size_ = 0, wrenches_size_ = 0;  ///< number of values in a row
   std::int64_t steps_to_row_ = log_every_;
   LogRows rows_;

@@ -1,6 +1,7 @@
 #include "quadcore/flight.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "quadcore/log.hpp"
@@ -19,12 +20,13 @@ void reserve_more(std::vector<double>& numbers, std::size_t more) {
 }  // namespace
 
 Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every,
-               bool wrenches, const std::vector<std::string>& topics)
+               bool wrenches, const std::vector<std::string>& topics, std::size_t to_fill)
     : simulation_(simulation),
       commands_(std::move(commands)),
       log_every_(log_every),
       log_wrenches_(wrenches),
-      topics_(simulation.topics().at(topics)) {
+      topics_(simulation.topics().at(topics)),
+      to_fill_(to_fill) {
   if (log_every < 1) {
     throw InputError("log_every is " + std::to_string(log_every) + ". Give a whole number >= 1.");
   }
@@ -77,6 +79,7 @@ void Flight::log() {
     append_log_row(simulation_.state(), rows_.table);
     for (const std::size_t topic : topics_)
       append_log_row(simulation_.topics()[topic], rows_.table);
+    rows_.table.insert(rows_.table.end(), to_fill_, std::numeric_limits<double>::quiet_NaN());
   } catch (...) {
     rows_.wrenches.resize(before);  // drop an incomplete row
     rows_.table.resize(row);

@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...simulation.flight import Pilot, Rows, count_steps, fly, list_columns
+from ...simulation.flight import Pilot, count_steps, fly, list_columns
 from ...simulation.log import Log
+from ...simulation.rows import Rows
 from ...simulation.simulation import Simulation
 from ..chapter2 import Vehicle
 from ..chapter2.vehicle import list_command_order
