@@ -76,6 +76,25 @@ void ForceField::refuse(const Kinematics&, Loads&) const {
   throw Error("a force or torque is not a finite number");
 }
 
+void Engine::get_motion(VehicleState& state) {
+  const Kinematics& k = kinematics();
+  state.position = k.p_WF;
+  state.orientation = k.q_WF;
+  state.linear_velocity = k.R_WF * k.v_WF_F;
+  state.angular_velocity = k.w_WF_F;
+  for (std::size_t i = 0; i < k.rotors.size(); ++i) {
+    state.rotor_velocity[static_cast<Eigen::Index>(i)] = k.rotors.number(MotionRow::rate, i);
+  }
+}
+
+void Engine::get_state(VehicleState& state) {
+  get_motion(state);
+  const Kinematics& k = kinematics();
+  for (std::size_t i = 0; i < k.rotors.size(); ++i) {
+    state.rotor_angle[static_cast<Eigen::Index>(i)] = k.angle(i);
+  }
+}
+
 void SharedWorld::step(double dt, const std::vector<TimedForces>& forces) {
   for (current_ = 0; current_ < engines_.size(); ++current_) {
     engines_[current_]->step(forces[current_].time, dt, *forces[current_].field);

@@ -54,7 +54,7 @@ void fly(Engine& engine, int steps, const Each& each) {
   }
 }
 
-inline VehicleState state_of(const Engine& engine) {
+inline VehicleState state_of(Engine& engine) {
   VehicleState state = blank(static_cast<Eigen::Index>(engine.model().joints.size()));
   engine.get_state(state);
   return state;

@@ -157,6 +157,16 @@ def test_a_log_of_many_pieces_is_that_of_one(monkeypatch):
         assert pieces.wrenches[name].tobytes() == wrench.tobytes()
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_logs_without_joint_angles_leave_the_state_up_to_date(engine):
+    logged, stepped = quadrotor(engine), quadrotor(engine)
+    for sim in (logged, stepped):
+        sim.command(HOVER)
+    logged.run(0.05)
+    stepped.step(50)
+    assert bits(logged) == bits(stepped)
+
+
 def test_a_run_ends_with_the_last_step_that_fits():
     assert len(quadrotor().run(0)) == 1
     assert len(quadrotor().run(0.0019)) == 2

@@ -267,18 +267,6 @@ void EigenEngine::refuse() { forces_->refuse(kinematics_, loads_); }
 
 void EigenEngine::show() { show_(step_, state_.data()); }
 
-void EigenEngine::get_state(VehicleState& state) const {
-  state.position = kinematics_.p_WF;
-  state.orientation = kinematics_.q_WF;
-  state.linear_velocity = kinematics_.R_WF * kinematics_.v_WF_F;
-  state.angular_velocity = kinematics_.w_WF_F;
-  for (std::size_t i = 0; i < kinematics_.rotors.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    state.rotor_velocity[row] = kinematics_.rotors.number(MotionRow::rate, i);
-    state.rotor_angle[row] = kinematics_.rotors.number(MotionRow::angle, i);
-  }
-}
-
 void EigenEngine::set_state(const VehicleState& state) {
   const Quaterniond q = state.orientation.normalized();
   const auto put = [&](std::size_t at, const auto& values) {

@@ -355,18 +355,6 @@ void OdeEngine::show() {
   hinged_.show(kinematics_);
 }
 
-void OdeEngine::get_state(VehicleState& state) const {
-  state.position = kinematics_.p_WF;
-  state.orientation = kinematics_.q_WF;
-  state.linear_velocity = kinematics_.R_WF * kinematics_.v_WF_F;
-  state.angular_velocity = kinematics_.w_WF_F;
-  for (std::size_t i = 0; i < vehicle_->rotors(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    state.rotor_velocity[row] = kinematics_.rotors[i].rate;
-    state.rotor_angle[row] = kinematics_.angle(i);
-  }
-}
-
 void OdeEngine::set_state(const VehicleState& state) {
   vehicle_->place(state);
   forget_hinge_forces();

@@ -43,7 +43,6 @@ class OdeEngine final : public Engine {
   const Model& model() const override { return model_; }
   void step(double time, double dt, const ForceField& forces) override;
   Kinematics& kinematics() override { return kinematics_; }
-  void get_state(VehicleState& state) const override;
   void set_state(const VehicleState& state) override;
   std::vector<double> save() const override;
   void restore(const std::vector<double>& saved) override;

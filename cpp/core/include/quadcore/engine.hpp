@@ -46,7 +46,9 @@ class Engine {
   /// Return the present motion. The caller sets its time and air velocity.
   virtual Kinematics& kinematics() = 0;
   /// Write the present state, except `state.time`.
-  virtual void get_state(VehicleState& state) const = 0;
+  void get_state(VehicleState& state);
+  /// The same without the joint angles, which take an arc tangent each in `gazebo11`.
+  void get_motion(VehicleState& state);
   /// Set the state; `state.time` is ignored.
   virtual void set_state(const VehicleState& state) = 0;
 

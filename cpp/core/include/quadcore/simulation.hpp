@@ -123,7 +123,12 @@ class Simulation : private ForceField {
   /// Return the present state, which is computed on request. Call this again after a step, and not
   /// from two threads at once.
   const VehicleState& state() const {
-    if (is_outdated_) show_state();
+    if (has_old_angles_) show_state();
+    return state_;
+  }
+  /// The same for callers that do not read the joint angles, which are not updated.
+  const VehicleState& motion() const {
+    if (is_outdated_) show_motion();
     return state_;
   }
   /// Return the topics of plugins and callers.
@@ -204,9 +209,10 @@ class Simulation : private ForceField {
   void check_flight() const;
   /// Return advice on a diverged motion, or the last warning of this flight.
   std::string advice() const;
-  void move();              ///< advances one step by motion_
-  void show_state() const;  ///< updates state_
-  void show_instant();      ///< writes time and air velocity into the engine's motion
+  void move();               ///< advances one step by motion_
+  void show_motion() const;  ///< updates state_ except the joint angles
+  void show_state() const;   ///< updates state_
+  void show_instant();       ///< writes time and air velocity into the engine's motion
   void blow(Kinematics& kinematics) const;
   void push(const std::vector<const LoadedPlugin*>& plugins, const Kinematics& kinematics,
             Loads& loads) const;
@@ -271,6 +277,7 @@ class Simulation : private ForceField {
   VectorXd plugin_state_;
   mutable VehicleState state_;                    ///< see state()
   mutable bool is_outdated_ = false;              ///< whether steps followed state_
+  mutable bool has_old_angles_ = false;           ///< whether steps followed its joint angles
   VehicleState start_;                            ///< state in which the simulation was made
   std::string failure_;                           ///< reason of a failure, or ""
   mutable const LoadedPlugin* active_ = nullptr;  ///< plugin whose hook is running, for errors

@@ -76,7 +76,7 @@ void Flight::log() {
     }
   }
   try {
-    append_log_row(simulation_.state(), rows_.table);
+    append_log_row(simulation_.motion(), rows_.table);
     for (const std::size_t topic : topics_)
       append_log_row(simulation_.topics()[topic], rows_.table);
     rows_.table.insert(rows_.table.end(), to_fill_, std::numeric_limits<double>::quiet_NaN());

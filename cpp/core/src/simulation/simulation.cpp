@@ -86,7 +86,7 @@ void Simulation::step(std::int64_t n, TotalVariation* rates) {
       end_step();
       if (rates) rates->add_row(engine_->kinematics().rotors, MotionRow::rate);
     }
-    is_outdated_ = true;
+    is_outdated_ = has_old_angles_ = true;
   } catch (...) {
     fail(what_was_thrown());
   }
@@ -136,10 +136,16 @@ void Simulation::fail(const std::string& what) {
   throw FlightError(time(), failure_);
 }
 
+void Simulation::show_motion() const {
+  engine_->get_motion(state_);
+  state_.time = time();
+  is_outdated_ = false;
+}
+
 void Simulation::show_state() const {
   engine_->get_state(state_);
   state_.time = time();
-  is_outdated_ = false;
+  is_outdated_ = has_old_angles_ = false;
 }
 
 void Simulation::check_flight() const {
