@@ -77,7 +77,9 @@ Actuation::Now Actuation::now(const double* state) const {
   RotorsNumbers<double> now{};
   const std::vector<RotorNumbers<double>>& rotors = numbers_->rotors;
   for (std::size_t i = 0; i < rotors.size(); ++i) {
-    add_rotor(rotors[i], state[Row::speeds + i], 1 - lost(state)[i], now);
+    const double speed = state[Row::speeds + i];
+    add_momentum(rotors[i], speed, now.h_F);
+    add_wrench(rotors[i].allocated, speed * speed, 1 - lost(state)[i], now.exerted);
   }
   return {!has_begun(state), saturated(state), demand_of(now.exerted), vector_of(now.h_F)};
 }

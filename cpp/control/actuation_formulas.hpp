@@ -50,11 +50,10 @@ QUADCORE_LAW void add_wrench(const AllocatedRotor<T>& rotor, T square, T left,
   sum.torque_F = sum.torque_F + share * Vec3<T>{rotor.effect[1], rotor.effect[2], rotor.effect[3]};
 }
 
-/// Add a rotor to the modelled state of the rotors.
+/// Add the angular momentum of a rotor.
 template <class T>
-QUADCORE_LAW void add_rotor(const RotorNumbers<T>& rotor, T speed, T left, RotorsNumbers<T>& sum) {
-  sum.h_F = sum.h_F + (rotor.momentum * rotor.spin * speed) * rotor.axis_F;
-  add_wrench(rotor.allocated, speed * speed, left, sum.exerted);
+QUADCORE_LAW void add_momentum(const RotorNumbers<T>& rotor, T speed, Vec3<T>& sum_F) {
+  sum_F = sum_F + (rotor.momentum * rotor.spin * speed) * rotor.axis_F;
 }
 
 /// Return the squared speed for a demand without limits: the one with the minimum sum of squares.

@@ -56,7 +56,12 @@ QUADCORE_LAW void command(const CommandBlock& block, std::size_t part) {
       &part_of<RotorNumbers<T>, T>(block.actuators, n * size_of<RotorNumbers>, part);
   T* const state = &part_of<T, T>(block.state, block.state_rows, part);
   RotorsNumbers<T> modelled{{none, {none, none, none}}, {none, none, none}, state[Row::saturated]};
-  for (std::size_t i = 0; i < n; ++i) add_rotor(rotors[i], state[Row::speeds + i], one, modelled);
+  const bool reads_wrench = block.kind == ControllerKind::indi;
+  for (std::size_t i = 0; i < n; ++i) {
+    const T speed = state[Row::speeds + i];
+    if (block.switches.gyroscopic) add_momentum(rotors[i], speed, modelled.h_F);
+    if (reads_wrench) add_wrench(rotors[i].allocated, speed * speed, one, modelled.exerted);
+  }
   const InputNumbers<T> input{
       block.period, block.begins,
       part_of<MeasuredNumbers<T>, T>(block.measured, size_of<MeasuredNumbers>, part),
