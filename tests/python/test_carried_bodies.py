@@ -48,8 +48,10 @@ def test_after_its_release_the_bare_vehicle_flies_on_from_where_it_was(engine, h
     fly(released, 700)
     state = released.state.copy()
     assert released.mass > 1.2
+    laden = released.hover_speed
     rest = fly(released, 1500)
     assert released.mass < 1.1
+    assert np.all(np.abs(released.hover_speed) < np.abs(laden))
     bare = start(hangar(urdf, G, engine=engine), **{n: getattr(state, n) for n in state.__slots__})
     alone = fly(bare, 1500)
     assert rest.table[1:, 1:].tobytes() == alone.table[1:, 1:].tobytes()  # all but the clock

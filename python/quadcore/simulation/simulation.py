@@ -127,8 +127,8 @@ class Simulation(_core.Simulation):
     def hover_speed(self) -> np.ndarray:
         """Commands at which the vehicle hovers level, signed, rad/s; shape (n,).
 
-        Neighbouring rotors turn in opposite directions; rotor faults are not considered. Each
-        access evaluates the force models, which takes some milliseconds.
+        Neighbouring rotors turn in opposite directions; rotor faults are not considered. The
+        first access evaluates the force models, which takes some milliseconds.
 
         Raises
         ------

@@ -159,8 +159,9 @@ class Simulation : private ForceField {
 
   /// Return the force laws that plugins provide. Valid for the lifetime of this simulation.
   const ForceLaws& force_laws() const { return laws_; }
-  /// Return a description of the vehicle. Takes some milliseconds and changes nothing.
-  VehicleDescription describe_vehicle();
+  /// Return a description of the vehicle, valid until a step. The first call takes some
+  /// milliseconds; none changes anything.
+  const VehicleDescription& describe_vehicle();
 
   /// Return the names of all wrench terms, in the order of wrenches().
   const std::vector<std::string>& wrench_terms() const { return wrench_terms_; }
@@ -184,6 +185,7 @@ class Simulation : private ForceField {
   void note_hooks();  ///< collects the plugins with each hook in calling order
   void gather_laws();
   void prepare_plugins();  ///< calls the plugins' prepare()
+  VehicleDescription probe_vehicle();
   Wrench probe(const VehicleState& state);
   AirResistance probe_air(const VehicleDescription& vehicle);
   void plant_seed(std::uint64_t seed);
@@ -267,8 +269,9 @@ class Simulation : private ForceField {
   bool windy_ = false;                    ///< whether the air may move
   std::vector<std::string> wrench_terms_;
   std::unique_ptr<Engine> engine_;
-  std::vector<CarriedBody> carried_;  ///< bodies attached in the engine's model
-  std::vector<CarriedBody> asked_;    ///< bodies that plugins attached most recently
+  std::optional<VehicleDescription> description_;  ///< of the engine's model; absent until asked
+  std::vector<CarriedBody> carried_;               ///< bodies attached in the engine's model
+  std::vector<CarriedBody> asked_;                 ///< bodies that plugins attached most recently
   int command_topic_ = -1;
   Motion motion_;  ///< replaces the engine's steps, if set
 

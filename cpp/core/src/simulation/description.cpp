@@ -65,7 +65,7 @@ class Kept {
 void Simulation::prepare_plugins() {
   const auto asks = [](const LoadedPlugin& p) { return p.descriptor->create.hooks.prepare; };
   if (std::none_of(plugins_.begin(), plugins_.end(), asks)) return;
-  const VehicleDescription vehicle = describe_vehicle();
+  const VehicleDescription vehicle = probe_vehicle();
   for (const LoadedPlugin& p : plugins_) {
     if (!asks(p)) continue;
     active_ = &p;
@@ -74,7 +74,12 @@ void Simulation::prepare_plugins() {
   active_ = nullptr;
 }
 
-VehicleDescription Simulation::describe_vehicle() {
+const VehicleDescription& Simulation::describe_vehicle() {
+  if (!description_) description_ = probe_vehicle();
+  return *description_;
+}
+
+VehicleDescription Simulation::probe_vehicle() {
   const std::vector<double> as_it_is = engine_->save();
   // Use the initial plugin state: later changes of it are not part of the vehicle.
   const Kept state_of_plugins(plugin_state_);

@@ -137,6 +137,7 @@ std::unique_ptr<Engine> Simulation::another_engine(const VectorXd& plugin_state)
 
 void Simulation::change_to(std::unique_ptr<Engine> engine) {
   engine_ = std::move(engine);
+  description_.reset();
   carried_ = asked_;
 }
 
