@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, Dict, Mapping, Optional, Union
+from typing import Any, Dict, Mapping, Optional, Tuple, Union
 
 from .. import _core
 from ..model import resources
 from ..support.import_lock import LOCK
-from ..support.input_files import is_file
 from ..support.output_files import atomic_write, encode_text
 from .built_in import BuiltInController
 from .rate_and_delay import DELAY, RATE, check_rate_or_delay
@@ -139,7 +139,11 @@ def make_for_vehicle(name: str, vehicle: str) -> BuiltInController:
 
 def find_shipped(name: str, vehicle: str) -> Optional[Path]:
     """Return the path of the built-in gains of a vehicle, or None."""
+    return _list_shipped().get((vehicle, name))
+
+
+@lru_cache(maxsize=None)
+def _list_shipped() -> Dict[Tuple[str, str], Path]:
+    """List the files of built-in gains by vehicle and controller."""
     folder = resources.find_root() / "config" / "gains"
-    path = folder / vehicle / f"{name}.yaml"
-    # A name may contain no path.
-    return path if path.parent.parent == folder and is_file(path) else None
+    return {(path.parent.name, path.stem): path for path in folder.glob("*/*.yaml")}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 
 from .. import _core
@@ -9,6 +10,7 @@ from .. import _core
 _PACKAGE = Path(__file__).resolve().parents[1]
 
 
+@lru_cache(maxsize=None)
 def find_root() -> Path:
     """Return the folder that contains ``urdf/``, ``worlds/`` and ``config/``.
 

@@ -55,8 +55,9 @@ class ControllerPilot(ReferencePilot):
     ) -> None:
         if isinstance(controller, str):
             controller = controllers.parse(controller, simulation.model.name)
+        else:
+            check_callable(controller)
         super().__init__(simulation, reference)
-        check_callable(controller)
         self.is_vectorized = is_vectorized(controller)
         self.rate = check_rate_or_delay("controller", "rate", getattr(controller, "rate", RATE))
         self.delay = check_rate_or_delay("controller", "delay", getattr(controller, "delay", DELAY))
