@@ -26,9 +26,9 @@ QUADCORE_LAW laws::Vec3<T> air_force_W(const AirNumbers<N>& air, const laws::Mat
   const laws::Vec3<T> f_F{row(0) + c[0] * laws::absolute(v_W.x) * v_W.x,
                           row(1) + c[1] * laws::absolute(v_W.y) * v_W.y,
                           row(2) + c[2] * laws::absolute(v_W.z) * v_W.z};
-  const laws::Vec3<T> f_W = R_WF * f_F;
-  return laws::Vec3<T>{-f_W.x, -f_W.y, -f_W.z} -
-         (air.quadratic * laws::square_root(dot(v_W, v_W))) * v_W;
+  const laws::Vec3<T> exerted_W = R_WF * f_F, f_W{-exerted_W.x, -exerted_W.y, -exerted_W.z};
+  if (!laws::any(air.quadratic != 0.0)) return f_W;
+  return f_W - (air.quadratic * laws::square_root(dot(v_W, v_W))) * v_W;
 }
 
 }  // namespace quadcore::control

@@ -61,6 +61,19 @@ TEST_CASE("the air is described as the force laws have it, whatever the joints' 
   }
 }
 
+TEST_CASE("drag that the force laws do not have is described as none, without rounding errors") {
+  const std::string tags =
+      test::tag("rotorThrustCoeff", "1.1487e-5") + test::tag("rotorTorqueCoeff", "1.1e-7") +
+      test::tag("inducedDragCoeff", "0.0175") + test::tag("parasiticDragCoeff", "0.003") +
+      test::tag("dragModel", "appendix");
+  for (const char* engine : {"eigen", "gazebo11"}) {
+    Simulation simulation(test::vehicle_with("aerodynamic", tags, 4), World{}, {engine});
+    const AirResistance& air = simulation.describe_vehicle().air;
+    CHECK(air.quadratic == 0);
+    CHECK(air.of_components.z() == doctest::Approx(4 * 0.003));
+  }
+}
+
 TEST_CASE("a rotor is described as its motor drives it") {
   const VehicleDescription vehicle = described("eigen", "appendix", "4");
   for (const std::size_t i : {0U, 4U}) {

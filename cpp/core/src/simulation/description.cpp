@@ -17,6 +17,9 @@ Wrench operator-(const Wrench& a, const Wrench& b) {
   return {a.force_F - b.force_F, a.torque_F - b.torque_F};
 }
 
+/// Part of the drag below which a coefficient is the rounding error of the probes.
+constexpr double rounding = 1e-12;
+
 /// Return the state at rest, upright at the origin.
 VehicleState still(const VehicleState& state) {
   VehicleState rest;
@@ -169,7 +172,9 @@ AirResistance Simulation::probe_air(const VehicleDescription& vehicle) {
   diagonal << 1, 1, 1, 0, 0, 0;
   const Vector3d across_axes =
       -(odd(diagonal) + air.linear * diagonal).head<3>();  // sqrt(3) quadratic + of_components
-  air.quadratic = (across_axes - along_axes).mean() / (std::sqrt(3.0) - 1);
+  const double drag = std::max(air.linear.cwiseAbs().maxCoeff(), along_axes.cwiseAbs().maxCoeff());
+  const double quadratic = (across_axes - along_axes).mean() / (std::sqrt(3.0) - 1);
+  air.quadratic = std::abs(quadratic) > rounding * drag ? quadratic : 0;
   air.of_components = along_axes - Vector3d::Constant(air.quadratic);
   return air;
 }
