@@ -93,7 +93,7 @@ QUADCORE_LAW Vec3<T> attitude_torque(const VehicleNumbers<T>& vehicle, bool drag
 template <class T>
 QUADCORE_LAW Matrix3<T> attitude_of(const Vec3<T>& z_W, const Vec3<T>& across_W) {
   const Vec3<T> z = normalised(z_W);
-  const Vec3<T> x = normalised(cross(across_W, z));
+  const Vec3<T> x = normalised(cross(across_W, z_W));  // need not wait for z
   const Vec3<T> y = cross(z, x);
   return {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z};
 }

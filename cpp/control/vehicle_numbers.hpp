@@ -74,10 +74,9 @@ QUADCORE_LAW Matrix3<T> inversely(const Matrix3<T>& A, const Matrix3<T>& B) {
 /// Return a vector divided by its norm, or the null vector.
 template <class T>
 QUADCORE_LAW Vec3<T> normalised(const Vec3<T>& a) {
-  const T square = dot(a, a), norm = laws::square_root(square);
-  const auto is_long = square > 0;
-  return {laws::chosen_by(is_long, a.x / norm, a.x), laws::chosen_by(is_long, a.y / norm, a.y),
-          laws::chosen_by(is_long, a.z / norm, a.z)};
+  const T square = dot(a, a), inverse = 1.0 / laws::square_root(square);
+  const T factor = laws::chosen_by(square > 0, inverse, laws::broadcast<T>(1));
+  return factor * a;
 }
 
 }  // namespace quadcore::control
