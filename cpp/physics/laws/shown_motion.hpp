@@ -27,14 +27,14 @@ struct ShownPack {
   QUADCORE_LAW Vec3<T> in_frame(const Vec3<T>& f_R) const {
     if (shown.rotors.has_rotations) return columns(MotionRow::R_FR) * f_R;
     return turned(axis_F(), sine_and_cosine(load<T>(row(MotionRow::angle))),
-                        columns(MotionRow::R_FR_at_zero) * f_R);
+                  columns(MotionRow::R_FR_at_zero) * f_R);
   }
   QUADCORE_LAW bool windy() const { return true; }
   QUADCORE_LAW Vec3<T> v_WA_F() const { return of_frame(FrameNumber::v_WA_F); }
   QUADCORE_LAW Vec3<T> w_WF_F() const { return of_frame(FrameNumber::w_WF_F); }
   QUADCORE_LAW Vec3<T> v_WF_W() const {
     return broadcast<T>(matrix(shown.frame + FrameNumber::R_WF) *
-                              vec(shown.frame + FrameNumber::v_WF_F));
+                        vec(shown.frame + FrameNumber::v_WF_F));
   }
 
  private:
