@@ -96,7 +96,7 @@ void LaneBlocks::choose_width() {
       &show_hinged_block<1>, &show_hinged_block<2>, &show_hinged_block<4>, &show_hinged_block<8>};
   static constexpr laws::ForEachWidth<void(const Block&, const int*, const Commands&)> commands{
       &command_motors<1>, &command_motors<2>, &command_motors<4>, &command_motors<8>};
-  const int width = lane_width(widest_lanes);
+  const int width = lane_width();
   command_ = commands[width];
   step_ = are_hinged() ? hinged_steps[width] : steps[width];
   show_ = are_hinged() ? hinged_shows[width] : shows[width];

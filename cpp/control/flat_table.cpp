@@ -26,7 +26,7 @@ FlatVehicle describe_flatly(const ModelledVehicle& model, bool with_drag) {
 }  // namespace
 
 FlatTable::FlatTable(const ModelledVehicle& model, bool with_drag)
-    : vehicle_(describe_flatly(model, with_drag)), width_(lane_width(widest_lanes)) {}
+    : vehicle_(describe_flatly(model, with_drag)), width_(lane_width()) {}
 
 void FlatTable::set(std::size_t column, const Reference& wanted) {
   const auto put = [&](std::size_t row, const Vector3d& vector) {

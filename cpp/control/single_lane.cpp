@@ -10,7 +10,7 @@ namespace quadcore::control {
 
 static_assert(size_of<MeasuredNumbers> == 13, "These are the first values of odometry.");
 
-SingleLane::SingleLane() : width_(lane_width(widest_lanes)) {}
+SingleLane::SingleLane() : width_(lane_width()) {}
 
 bool SingleLane::prepare(double period, const Controller& controller, double* state) {
   if (period != period_) lanes_ = controller.in_lanes(period);

@@ -109,15 +109,13 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
     rotors.set_vector(MotionRow::p_FRcm, i, body_.p_FRcm_F[i]);
     rotors.set_matrix(MotionRow::R_FR_at_zero, i, R_FR);
   }
-  static constexpr laws::ForRotors<void(const GyrostatStep&, const double*)> shows{
-      {&show_gyrostat<1>, &show_gyrostat<2>, &show_gyrostat<4>, &show_gyrostat<8>},
-      &show_gyrostat<4, true>};
-  static constexpr laws::ForRotors<void(const GyrostatStep&, double, double)> steps{
-      {&step_gyrostat<1>, &step_gyrostat<2>, &step_gyrostat<4>, &step_gyrostat<8>},
-      &step_gyrostat<4, true>};
-  const RotorCode code = rotor_code(rotors.size());
-  show_ = shows[code];
-  advance_ = steps[code];
+  static constexpr laws::ForEachWidth<void(const GyrostatStep&, const double*)> shows{
+      &show_gyrostat<1>, &show_gyrostat<2>, &show_gyrostat<4>, &show_gyrostat<8>};
+  static constexpr laws::ForEachWidth<void(const GyrostatStep&, double, double)> steps{
+      &step_gyrostat<1>, &step_gyrostat<2>, &step_gyrostat<4>, &step_gyrostat<8>};
+  const int width = lane_width();
+  show_ = shows[width];
+  advance_ = steps[width];
   step_ = view();
   state_[GyrostatState::orientation + 3] = 1;
   show();

@@ -74,12 +74,12 @@ struct GyrostatStep {
 };
 
 /// Write the motion of a state to the tables.
-template <int W, bool has_32_registers = false>
+template <int W>
 void show_gyrostat(const GyrostatStep& g, const double* state);
 
-/// Take one step of dt from a time [s] by the classical fourth-order Runge-Kutta method, with W
-/// rotors at once. At the end the tables contain the motion of `state`.
-template <int W, bool has_32_registers = false>
+/// Take one step of dt from a time [s] by the classical fourth-order Runge-Kutta method, in code for
+/// lanes of width W. At the end the tables contain the motion of `state`.
+template <int W>
 void step_gyrostat(const GyrostatStep& g, double time, double dt);
 
 }  // namespace quadcore

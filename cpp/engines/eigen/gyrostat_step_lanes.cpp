@@ -186,9 +186,9 @@ QUADCORE_LAW void normalise(const GyrostatStep& g, FrameState& now) {
 
 }  // namespace
 
-template <int W, bool has_32_registers>
+template <int W>
 void show_gyrostat(const GyrostatStep& g, const double* state) {
-  show<W>(g, FrameState::load(state), state);
+  show<laws::rotors_in_pack<W>>(g, FrameState::load(state), state);
 }
 
 /// Compiled for each case, because features of few vehicles would cost registers for all.
@@ -211,20 +211,19 @@ QUADCORE_LAW void step(const GyrostatStep& g, double time, double dt) {
   show<W>(g, frame, g.state);
 }
 
-template <int W, bool has_32_registers>
+template <int W>
 void step_gyrostat(const GyrostatStep& g, double time, double dt) {
+  constexpr int pack = laws::rotors_in_pack<W>;
   if (g.evaluate_rest) {
-    step<W, true, false>(g, time, dt);
+    step<pack, true, false>(g, time, dt);
   } else if (g.upright) {
-    step<W, false, true>(g, time, dt);
+    step<pack, false, true>(g, time, dt);
   } else {
-    step<W, false, false>(g, time, dt);
+    step<pack, false, false>(g, time, dt);
   }
 }
 
-template void show_gyrostat<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const GyrostatStep&,
-                                                                       const double*);
-template void step_gyrostat<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const GyrostatStep&, double,
-                                                                       double);
+template void show_gyrostat<QUADCORE_LANES>(const GyrostatStep&, const double*);
+template void step_gyrostat<QUADCORE_LANES>(const GyrostatStep&, double, double);
 
 }  // namespace quadcore

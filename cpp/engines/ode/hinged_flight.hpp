@@ -27,29 +27,29 @@ struct FlightLoads {
   const double* rotors;
 };
 
-/// \name Steps of a vehicle with W rotors at once; W is 1 if some rotors carry others
+/// \name Steps of a vehicle in code for lanes of width W, which is 1 if some rotors carry others
 /// @{
 /// Compute the geometry of a new state.
-template <int W, bool has_32_registers = false>
+template <int W>
 void read_hinged(const HingedFlight& flight);
 /// Set all forces on the bodies to zero.
-template <int W, bool has_32_registers = false>
+template <int W>
 void clear_hinged(const HingedFlight& flight);
 /// Add loads.
-template <int W, bool has_32_registers = false>
+template <int W>
 void push_hinged(const HingedFlight& flight, const FlightLoads& loads);
 /// Set the forces on the bodies to those of force laws in the shown motion, without wind. Returns
 /// false if they are not finite.
-template <int W, bool has_32_registers = false>
+template <int W>
 bool push_hinged_laws(const HingedFlight& flight, const LawViews& views, const ShownFlight& shown);
 /// Advance by dt [s], with the gyroscopic torque of each body or without. Returns false without a
 /// motion if a hinge requires a correction beyond the maximum.
-template <int W, bool has_32_registers = false>
+template <int W>
 bool advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic);
-template <int W, bool has_32_registers = false>
+template <int W>
 void show_hinged(const HingedFlight& flight, const ShownFlight& shown);
 /// Compute the loads of the hinges in the last step.
-template <int W, bool has_32_registers = false>
+template <int W>
 void find_hinge_loads(const HingedFlight& flight);
 /// @}
 

@@ -9,18 +9,19 @@ namespace quadcore {
 namespace {
 
 template <int W>
-using Bodies = HingedBodies<laws::Pack<W>, Lanes::rotors>;
+using Bodies = HingedBodies<laws::RotorPack<W>, Lanes::rotors>;
 
 template <int W>
 QUADCORE_LAW Bodies<W> bodies_of(const HingedFlight& flight) {
-  using T = laws::Pack<W>;
+  using T = laws::RotorPack<W>;
   return {flight.tree, flight.constants, flight.state, reinterpret_cast<BodyWork<T>*>(flight.work),
           reinterpret_cast<SoftRows<T>*>(flight.soft)};
 }
 
 template <int W>
 QUADCORE_LAW std::size_t packs_of_rotors(const HingedFlight& flight) {
-  return (flight.rotors + W - 1) / W;
+  constexpr std::size_t pack = laws::rotors_in_pack<W>;
+  return (flight.rotors + pack - 1) / pack;
 }
 
 /// Work on the i-th pack of rotors. Packs require that all joints belong to rotors.
@@ -66,35 +67,35 @@ QUADCORE_LAW WrenchOfAir wrench_of_air(const LawViews& views, const double* show
 
 }  // namespace
 
-template <int W, bool has_32_registers>
+template <int W>
 void read_hinged(const HingedFlight& flight) {
   bodies_of<W>(flight).read();
 }
 
-template <int W, bool has_32_registers>
+template <int W>
 void clear_hinged(const HingedFlight& flight) {
   bodies_of<W>(flight).clear_forces();
 }
 
-template <int W, bool has_32_registers>
+template <int W>
 void push_hinged(const HingedFlight& flight, const FlightLoads& loads) {
-  using T = laws::Pack<W>;
+  using T = laws::RotorPack<W>;
   const Bodies<W> bodies = bodies_of<W>(flight);
   const HingedFrame<T> frame(bodies);
   push_frame(bodies, frame, laws::broadcast<T>(loads.frame_force_F),
              laws::broadcast<T>(loads.frame_torque_F));
   for (std::size_t i = 0; i < packs_of_rotors<W>(flight); ++i) {
     const std::size_t joint = joint_of<W>(flight, i);
-    const double* rows = loads.rotors + rotor_offset(LoadRow::count, i * W);
+    const double* rows = loads.rotors + rotor_offset(LoadRow::count, i * laws::rotors_in_pack<W>);
     push_rotor(bodies, frame, joint, laws::load3<T>(rows + LoadRow::force * widest_lanes),
                laws::load<T>(rows + LoadRow::joint_torque * widest_lanes),
                bodies.joint_rate(joint + 1));
   }
 }
 
-template <int W, bool has_32_registers>
+template <int W>
 bool push_hinged_laws(const HingedFlight& flight, const LawViews& views, const ShownFlight& shown) {
-  using T = laws::Pack<W>;
+  using T = laws::RotorPack<W>;
   Bodies<W> bodies = bodies_of<W>(flight);
   bodies.clear_forces();
   const HingedFrame<T> frame(bodies);
@@ -107,10 +108,11 @@ bool push_hinged_laws(const HingedFlight& flight, const LawViews& views, const S
     const Vec3<T> none{T{}, T{}, T{}};
     laws::RotorLoads<T> loads{none, none, T{}};
     views.rotor_forces.for_each([&](const RotorForces& law) QUADCORE_INLINED {
-      laws::add_rotor_forces<T>(law, motion, i * W, loads);
+      laws::add_rotor_forces<T>(law, motion, i * laws::rotors_in_pack<W>, loads);
     });
     views.motor_torques.for_each([&](const MotorTorques& law) QUADCORE_INLINED {
-      loads.joint_torque = loads.joint_torque + laws::motor_torque<T>(law, i * W, rate);
+      loads.joint_torque =
+          loads.joint_torque + laws::motor_torque<T>(law, i * laws::rotors_in_pack<W>, rate);
     });
     laws::add_in_order(reaction_F, loads.reaction_F);
     const Vec3<T>& f_F = loads.f_F;
@@ -124,7 +126,7 @@ bool push_hinged_laws(const HingedFlight& flight, const LawViews& views, const S
                          tau_F.z + rest[0] + rest[1]);
 }
 
-template <int W, bool has_32_registers>
+template <int W>
 bool advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic) {
   Bodies<W> bodies = bodies_of<W>(flight);
   bodies.turn_inertias(gyroscopic);
@@ -134,9 +136,9 @@ bool advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic) {
   return true;
 }
 
-template <int W, bool has_32_registers>
+template <int W>
 void show_hinged(const HingedFlight& flight, const ShownFlight& shown) {
-  using T = laws::Pack<W>;
+  using T = laws::RotorPack<W>;
   const Bodies<W> bodies = bodies_of<W>(flight);
   const HingedFrame<T> frame(bodies);
   const Matrix3<T>& R = frame.R_WF;
@@ -151,7 +153,7 @@ void show_hinged(const HingedFlight& flight, const ShownFlight& shown) {
   store_one(shown.frame + FrameNumber::p_WF, frame.p_WF);
   for (std::size_t i = 0; i < packs_of_rotors<W>(flight); ++i) {
     const HingedRotor<T, Lanes::rotors> rotor{bodies, frame, joint_of<W>(flight, i)};
-    double* const to = shown.motion + rotor_offset(MotionRow::count, i * W);
+    double* const to = shown.motion + rotor_offset(MotionRow::count, i * laws::rotors_in_pack<W>);
     const auto put = [to](std::size_t row, const Vec3<T>& v)
                          QUADCORE_INLINED { laws::store3(to + row * widest_lanes, v); };
     const Vec3<T> z_F = rotor.normal_F();
@@ -170,7 +172,7 @@ void show_hinged(const HingedFlight& flight, const ShownFlight& shown) {
   store_one(shown.frame + FrameNumber::v_WCcm_F, center.v_WCcm_F);
 }
 
-template <int W, bool has_32_registers>
+template <int W>
 void find_hinge_loads(const HingedFlight& flight) {
   const Bodies<W> bodies = bodies_of<W>(flight);
   for (std::size_t i = 1; i < bodies.size(); ++i) {
@@ -178,17 +180,13 @@ void find_hinge_loads(const HingedFlight& flight) {
   }
 }
 
-template void read_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&);
-template void clear_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&);
-template void push_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&,
-                                                                     const FlightLoads&);
-template bool push_hinged_laws<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&,
-                                                                          const LawViews&,
-                                                                          const ShownFlight&);
-template bool advance_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&, double,
-                                                                        bool);
-template void show_hinged<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&,
-                                                                     const ShownFlight&);
-template void find_hinge_loads<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const HingedFlight&);
+template void read_hinged<QUADCORE_LANES>(const HingedFlight&);
+template void clear_hinged<QUADCORE_LANES>(const HingedFlight&);
+template void push_hinged<QUADCORE_LANES>(const HingedFlight&, const FlightLoads&);
+template bool push_hinged_laws<QUADCORE_LANES>(const HingedFlight&, const LawViews&,
+                                               const ShownFlight&);
+template bool advance_hinged<QUADCORE_LANES>(const HingedFlight&, double, bool);
+template void show_hinged<QUADCORE_LANES>(const HingedFlight&, const ShownFlight&);
+template void find_hinge_loads<QUADCORE_LANES>(const HingedFlight&);
 
 }  // namespace quadcore

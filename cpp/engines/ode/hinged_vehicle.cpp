@@ -5,6 +5,7 @@
 
 #include "body_state.hpp"
 #include "body_work.hpp"
+#include "laws/rotors.hpp"
 #include "ode_math.hpp"
 
 namespace quadcore {
@@ -53,7 +54,7 @@ HingedVehicle::HingedVehicle(const Bodies& bodies, const World& world, double ma
               state_.data(),
               work_.data(),
               soft_.empty() ? nullptr : soft_.data()},
-      calls_(calls(model_.is_star() ? rotor_code(rotors_.size()) : RotorCode{1, false})) {
+      calls_(calls(model_.is_star() ? lane_width() : 1)) {
   const Model& model = bodies.model;
   for (const Joint& joint : model.joints) {
     R_PC_at_zero_.push_back(joint.pose.rotation().toRotationMatrix());
@@ -66,29 +67,21 @@ HingedVehicle::HingedVehicle(const Bodies& bodies, const World& world, double ma
   }
 }
 
-HingedVehicle::Calls HingedVehicle::calls(const RotorCode& code) {
-  const auto of = [](auto lanes, auto registers) -> Calls {
+HingedVehicle::Calls HingedVehicle::calls(int width) {
+  const auto of = [](auto lanes) -> Calls {
     constexpr int W = lanes();
-    constexpr bool has_32 = registers();
-    return {W,
-            &read_hinged<W, has_32>,
-            &clear_hinged<W, has_32>,
-            &push_hinged<W, has_32>,
-            &push_hinged_laws<W, has_32>,
-            &advance_hinged<W, has_32>,
-            &show_hinged<W, has_32>,
-            &find_hinge_loads<W, has_32>};
+    return {laws::rotors_in_pack<W>, &read_hinged<W>,    &clear_hinged<W>, &push_hinged<W>,
+            &push_hinged_laws<W>,    &advance_hinged<W>, &show_hinged<W>,  &find_hinge_loads<W>};
   };
-  if (code.has_32_registers) return of(std::integral_constant<int, 4>(), std::true_type());
-  switch (code.width) {
+  switch (width) {
     case 8:
-      return of(std::integral_constant<int, 8>(), std::false_type());
+      return of(std::integral_constant<int, 8>());
     case 4:
-      return of(std::integral_constant<int, 4>(), std::false_type());
+      return of(std::integral_constant<int, 4>());
     case 2:
-      return of(std::integral_constant<int, 2>(), std::false_type());
+      return of(std::integral_constant<int, 2>());
     default:
-      return of(std::integral_constant<int, 1>(), std::false_type());
+      return of(std::integral_constant<int, 1>());
   }
 }
 

@@ -66,7 +66,7 @@ class HingedVehicle {
     void (*show)(const HingedFlight&, const ShownFlight&);
     void (*find_hinge_loads)(const HingedFlight&);
   };
-  static Calls calls(const RotorCode& code);
+  static Calls calls(int width);
 
   GazeboStep::Multipliers multipliers(std::size_t hinge) const;
   double* state_of(std::size_t body) const;

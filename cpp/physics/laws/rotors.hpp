@@ -5,6 +5,13 @@
 
 namespace quadcore::laws {
 
+/// Number of rotors of a vehicle in a pack, in code for lanes of width W. Most vehicles fit in four
+/// lanes; eight would be half empty, but the processors that have them have 32 registers for four.
+template <int W>
+constexpr int rotors_in_pack = W < 4 ? W : 4;
+template <int W>
+using RotorPack = Pack<rotors_in_pack<W>>;
+
 /// Call a function for each pack of W rotors. Most vehicles fit in one pack, for which all offsets
 /// in the tables are constants.
 template <int W, class Work>

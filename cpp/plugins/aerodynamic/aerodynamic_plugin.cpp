@@ -80,10 +80,9 @@ class AerodynamicPlugin final : public Plugin {
         fastest_(surely_below_half_a_turn / setup.dt),
         follows_any_turn_(setup.follows_any_turn),
         effectiveness_(setup, config_.rotors) {
-    static constexpr laws::ForRotors<void(const RotorForces&, const ShownMotion&)> codes{
-        {&add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>},
-        &add_rotor_forces<4, true>};
-    add_ = codes[rotor_code(setup.model.joints.size())];
+    static constexpr laws::ForEachWidth<void(const RotorForces&, const ShownMotion&)> widths{
+        &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
+    add_ = widths[lane_width()];
     if (config_.on_rotor) refuse_rotors_on_rotors(setup, config_);
     warn_without_drag(setup);
     warn_of_axes_against_lift(setup, config_);

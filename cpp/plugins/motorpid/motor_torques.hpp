@@ -5,8 +5,8 @@
 
 namespace quadcore::motorpid {
 
-/// Add the torques of all rotors to their loads, W rotors at once.
-template <int W, bool has_32_registers = false>
+/// Add the torques of all rotors to their loads, in code for lanes of width W.
+template <int W>
 void add_motor_torques(const MotorTorques& law, const RotorLanes& rotors);
 
 }  // namespace quadcore::motorpid

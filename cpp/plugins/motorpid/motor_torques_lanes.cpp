@@ -3,10 +3,10 @@
 
 namespace quadcore::motorpid {
 
-template <int W, bool has_32_registers>
+template <int W>
 void add_motor_torques(const MotorTorques& law, const RotorLanes& rotors) {
-  using T = laws::Pack<W>;
-  laws::for_each_pack<W>(rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
+  using T = laws::RotorPack<W>;
+  laws::for_each_pack<laws::rotors_in_pack<W>>(rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const double* rate =
         rotors.motion + rotor_offset(MotionRow::count, i) + MotionRow::rate * widest_lanes;
     double* torque =
@@ -15,7 +15,6 @@ void add_motor_torques(const MotorTorques& law, const RotorLanes& rotors) {
   });
 }
 
-template void add_motor_torques<QUADCORE_LANES, QUADCORE_HAS_32_REGISTERS>(const MotorTorques&,
-                                                                           const RotorLanes&);
+template void add_motor_torques<QUADCORE_LANES>(const MotorTorques&, const RotorLanes&);
 
 }  // namespace quadcore::motorpid

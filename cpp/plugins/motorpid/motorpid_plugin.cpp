@@ -53,11 +53,9 @@ class MotorPidPlugin final : public Plugin {
     for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
       places_[config_.rotors[j]] = static_cast<int>(j);
     }
-    static constexpr laws::ForRotors<void(const MotorTorques&, const RotorLanes&)> codes{
-        {&add_motor_torques<1>, &add_motor_torques<2>, &add_motor_torques<4>,
-         &add_motor_torques<8>},
-        &add_motor_torques<4, true>};
-    add_ = codes[rotor_code(setup.model.joints.size())];
+    static constexpr laws::ForEachWidth<void(const MotorTorques&, const RotorLanes&)> widths{
+        &add_motor_torques<1>, &add_motor_torques<2>, &add_motor_torques<4>, &add_motor_torques<8>};
+    add_ = widths[lane_width()];
     if (config_.i_min > config_.i_max) throw InputError("<iMin> exceeds <iMax>. Swap them.");
     if (config_.ki != 0 && config_.i_min == 0 && config_.i_max == 0) {
       setup.warnings.push_back(

@@ -22,24 +22,16 @@ int widest() {
   return 2;
 }
 
-/// Return the width that the environment requests, or 0.
-int requested_width() {
-  const char* text = std::getenv("QUADCORE_LANES");
-  if (!text) return 0;
-  for (const int width : {1, 2, 4, 8}) {
-    if (text == std::to_string(width)) return std::min(width, widest());
-  }
-  throw InputError("QUADCORE_LANES is '" + std::string(text) + "'. Use 1, 2, 4 or 8.");
-}
-
 }  // namespace
 
-RotorCode rotor_code(std::size_t rotors) {
+int lane_width() {
   static const int most = widest();
-  if (const int width = requested_width()) return {width, false};
-  int width = 2;
-  while (width < most && static_cast<std::size_t>(width) < rotors) width *= 2;
-  return {width, width == 4 && most == 8};
+  const char* const text = std::getenv("QUADCORE_LANES");
+  if (!text) return most;
+  for (const int width : {1, 2, 4, 8}) {
+    if (text == std::to_string(width)) return std::min(width, most);
+  }
+  throw InputError("QUADCORE_LANES is '" + std::string(text) + "'. Use 1, 2, 4 or 8.");
 }
 
 }  // namespace quadcore
