@@ -77,8 +77,8 @@ struct GyrostatStep {
 template <int W>
 void show_gyrostat(const GyrostatStep& g, const double* state);
 
-/// Take one step of dt from a time [s] by the classical fourth-order Runge-Kutta method, in code for
-/// lanes of width W. At the end the tables contain the motion of `state`.
+/// Take one step of dt from a time [s] by the classical fourth-order Runge-Kutta method, in code
+/// for lanes of width W. At the end the tables contain the motion of `state`.
 template <int W>
 void step_gyrostat(const GyrostatStep& g, double time, double dt);
 
