@@ -32,6 +32,7 @@ struct LoadedPlugin {
   std::size_t term_begin = 0;          ///< index of its first wrench term
   std::string who = {};                ///< name for errors: FILE:LINE: plugin 'name'
   std::uint64_t seed = 0;              ///< seed of its random numbers
+  std::size_t quiet = 0;  ///< place of its bounds in ForceLaws::quiet, if all have some
 };
 
 /// Complete state of a simulation as plain numbers and texts.
@@ -203,8 +204,9 @@ class Simulation : private ForceField {
   /// Write what plugins of other vehicles may see.
   void show_to_others(OtherVehicle& seen);
   void observe(const OtherVehicles& others);
-  /// Return whether no plugin's update() has an effect now.
-  bool is_quiet() const;
+  /// Return whether the update() of a plugin has no effect now. `news` is a set of Topics::news().
+  bool is_quiet(const LoadedPlugin& p, std::uint64_t news) const;
+  bool are_quiet() const;  ///< whether no update() has an effect now
   void begin_step();
   void end_step();
   void begin();  ///< runs the sensors at the start of the motion

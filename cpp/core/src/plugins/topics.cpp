@@ -136,9 +136,12 @@ void Topics::refuse_second(const std::string& who, const Topic& topic) const {
 
 void Topics::note_updates(const std::vector<bool>& updating_plugins) {
   for (Topic& topic : topics_) {
-    topic.concerns_updates =
-        !topic.readers.empty() ||
-        (topic.writer != the_caller && updating_plugins[static_cast<std::size_t>(topic.writer)]);
+    const auto note = [&](int plugin) {
+      const auto index = static_cast<std::size_t>(plugin);
+      if (updating_plugins[index]) topic.concerned |= set_of(index);
+    };
+    for (const int reader : topic.readers) note(reader);
+    if (topic.writer != the_caller) note(topic.writer);
   }
 }
 
@@ -154,7 +157,7 @@ void Topics::check(const std::vector<Message>& messages) const {
 }
 
 void Topics::restore(const std::vector<Message>& messages) {
-  has_news_ = true;
+  news_ = UINT64_MAX;
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     Topic& topic = topics_[i];
     static_cast<Message&>(topic) = messages[i];

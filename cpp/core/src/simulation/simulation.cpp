@@ -99,7 +99,7 @@ void Simulation::check_usable() const {
 }
 
 void Simulation::begin_step() {
-  if (!is_quiet()) update();
+  if (!are_quiet()) update();
   if (!with_.carried.empty()) take_along();
 }
 

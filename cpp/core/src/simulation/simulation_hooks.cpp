@@ -51,9 +51,10 @@ void Simulation::note_hooks() {
 }
 
 void Simulation::gather_laws() {
-  for (const LoadedPlugin& p : plugins_) {
+  for (LoadedPlugin& p : plugins_) {
     if (!p.descriptor->create.hooks.laws) continue;
     active_ = &p;
+    p.quiet = laws_.quiet.size();
     p.plugin->laws(std::as_const(*this).state_of(p), laws_);
   }
   active_ = nullptr;
@@ -182,17 +183,22 @@ void Simulation::sense(bool jumped) {
   });
 }
 
-bool Simulation::is_quiet() const {
-  if (!laws_.all_quiet || topics_.has_news()) return false;
-  const Kinematics& motion = engine_->kinematics();
-  return std::all_of(laws_.quiet.begin(), laws_.quiet.end(),
-                     [&](const Quiet& quiet) { return holds(quiet, motion); });
+bool Simulation::is_quiet(const LoadedPlugin& p, std::uint64_t news) const {
+  const auto index = static_cast<std::size_t>(&p - plugins_.data());
+  return laws_.all_quiet && (news & Topics::set_of(index)) == 0 &&
+         holds(laws_.quiet[p.quiet], engine_->kinematics());
+}
+
+bool Simulation::are_quiet() const {
+  if (!laws_.all_quiet || topics_.news() != 0) return false;
+  return std::all_of(with_.update.begin(), with_.update.end(),
+                     [this](const LoadedPlugin* p) { return is_quiet(*p, 0); });
 }
 
 void Simulation::update() {
-  topics_.forget_news();
-  sample(with_.update, false, [](const Plugin& plugin, const Sample& sample, PluginState state) {
-    plugin.update(sample, state);
+  const std::uint64_t news = topics_.take_news();
+  sample(with_.update, false, [&](const Plugin& plugin, const Sample& sample, PluginState state) {
+    if (!is_quiet(*active_, news | topics_.news())) plugin.update(sample, state);
   });
 }
 

@@ -39,10 +39,16 @@ class Schedule {
     const double due = count_due(step, dt);
     if (due > state[kAsked]) {
       state[kAsked] = due;
-      double* const order = place(state, state[kSent]);
+      const double period = std::max(period_, dt);  // at most one call per step
       // The first command acts at once, because no other command precedes it.
-      order[0] = step > 0 && delay_ > 0 ? step + count_delayed(dt) : step;
-      ask(std::max(period_, dt), order + 1);  // at most one call per step
+      if (step == 0 || delay_ <= 0) {
+        double* const speeds = place(state, 0) + 1;
+        ask(period, speeds);
+        return speeds;
+      }
+      double* const order = place(state, state[kSent]);
+      order[0] = step + count_delayed(dt);
+      ask(period, order + 1);
       state[kSent] += 1;
     }
     const double* arrived = nullptr;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "quadcore/plugin/export.hpp"
@@ -27,7 +29,7 @@ struct Topic : Message {
   MessageKind kind;               ///< meaning of its values
   int writer = the_caller;        ///< index of a plugin, or the_caller
   std::vector<int> readers = {};  ///< indices of plugins
-  bool concerns_updates = false;  ///< whether an update() may read or write it
+  std::uint64_t concerned = 0;    ///< set of the plugins with an update() that may read or write it
 };
 
 /// The topics of one simulation. A plugin declares in its constructor which topics it publishes and
@@ -68,7 +70,7 @@ class Topics {
     if (topic.writer != writer_) refuse_writer(topic);
     topic.stamp = time;
     topic.count += 1;
-    has_news_ |= topic.concerns_updates;
+    news_ |= topic.concerned;
     return topic.values.data();
   }
   /// Publish a message. Throws InputError if another writer owns the topic.
@@ -101,12 +103,14 @@ class Topics {
   std::vector<std::size_t> settle();
   /// Set the writer of the following publish() calls.
   void write_as(int writer) { writer_ = writer; }
-  /// Note which topics may change what an update() does: those with readers, and those that a
-  /// plugin with an update() writes.
+  /// Note which plugins have an update(), which may read and write their topics.
   void note_updates(const std::vector<bool>& updating_plugins);
-  /// Return whether one of these topics has changed since the last call of forget_news().
-  bool has_news() const { return has_news_; }
-  void forget_news() { has_news_ = false; }
+  /// Return the set of these plugins with a topic that has changed since the last take_news().
+  std::uint64_t news() const { return news_; }
+  /// Return the same set and empty it.
+  std::uint64_t take_news() { return std::exchange(news_, 0); }
+  /// Return the set of one plugin. Plugins 64 places apart count as the same one.
+  static std::uint64_t set_of(std::size_t plugin) { return std::uint64_t{1} << plugin % 64; }
   /// Begin a sample: late readers see the values of this moment.
   void begin_sample() {
     for (const auto& [copy, original] : late_) {
@@ -152,7 +156,7 @@ class Topics {
   std::vector<Participant> plugins_;
   std::vector<Declaration> declarations_;
   int writer_ = the_caller;
-  bool has_news_ = true;
+  std::uint64_t news_ = UINT64_MAX;  ///< set of plugins
 };
 
 }  // namespace quadcore
