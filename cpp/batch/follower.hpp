@@ -5,6 +5,7 @@
 
 #include "lane_blocks.hpp"
 #include "quadcore/batch.hpp"
+#include "quadcore/control/schedule.hpp"
 #include "quadcore/odometry_errors.hpp"
 
 namespace quadcore::batch {
@@ -39,6 +40,13 @@ std::vector<double> list_sums(const LaneNumbers& variation, std::size_t lane);
 /// \param draws  random numbers before this measurement
 messages::Odometry measure(const double* shown, const OdometryErrors& errors, std::uint64_t seed,
                            double draws);
+
+/// Write the times of the call at a step and of the next ones, `count` in all [s].
+inline void list_call_times(const control::Schedule& schedule, double step, double dt,
+                            double* times, std::size_t count) {
+  schedule.list_calls(step, dt, times, count);
+  for (std::size_t i = 0; i < count; ++i) times[i] *= dt;
+}
 
 /// Call a controller and count the call.
 /// \param seconds  where to add the duration of every sixteenth call [s]

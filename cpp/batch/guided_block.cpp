@@ -156,11 +156,7 @@ void GuidedBlock::command(Control& control, double step, double period, double* 
                                               follower.draws + step * errors.draws());
   const control::ReferencePreview::Point& point = control.preview->at(
       step * dt_, *follower.guide->reference, [&](double* times, std::size_t count) {
-        double at = step;
-        for (std::size_t i = 0; i < count; ++i) {
-          times[i] = at * dt_;
-          at = control.schedule.next_call(at, dt_);
-        }
+        list_call_times(control.schedule, step, dt_, times, count);
       });
   double* const memory = control.memory.data();
   const std::optional<control::FlatState> flat = point.flat_state();

@@ -124,11 +124,7 @@ void LaneControls::measure(double step, const double* shown) {
 
 void LaneControls::read_references(double step) {
   const auto list_times = [&](double* times, std::size_t count) {
-    double at = step;
-    for (std::size_t i = 0; i < count; ++i) {
-      times[i] = at * dt_;
-      at = schedule_.next_call(at, dt_);
-    }
+    list_call_times(schedule_, step, dt_, times, count);
   };
   for (const Followed& followed : followed_) {
     const BatchGuide& guide = *followed.followers.front()->guide;

@@ -21,9 +21,8 @@ QUADCORE_LAW void begin_variation(double* rows, T value) {
 /// Add the next value of a number, bit-identical to TotalVariation.
 template <class T>
 QUADCORE_LAW void add_variation(double* rows, T value) {
-  double *const last = rows + VariationRow::last * widest_lanes, *const sum =
-                                                                     rows + VariationRow::sum *
-                                                                                widest_lanes;
+  double* const last = rows + VariationRow::last * widest_lanes;
+  double* const sum = rows + VariationRow::sum * widest_lanes;
   const T size = absolute(value);
   store(sum, load<T>(sum) + absolute(size - load<T>(last)));
   store(last, size);
