@@ -85,6 +85,7 @@ struct Laws {
   bool airframe;                   ///< other laws of any airframe
   bool upright;                    ///< see GyrostatStep
   bool normals_turn;               ///< see GyrostatStep
+  bool aligned;                    ///< whether all links have the axes of the frame at angle zero
 
   /// Return whether some force law or normal requires the rotations of the rotors.
   bool turn() const { return normals_turn || (acting & laws::in_link_axes); }

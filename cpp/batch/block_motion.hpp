@@ -79,6 +79,7 @@ struct Rotors {
                                                                           : ConstantRow::p_CRcm_F));
   }
   QUADCORE_LAW Vec3<T> in_frame(const Vec3<T>& f_R) const {
+    if (block.laws.aligned) return turned(f_R);
     Matrix3<T> R_FR_at_zero = constants.matrix(ConstantRow::rotor(ConstantRow::R_FR_at_zero, i));
     if constexpr (upright) {
       R_FR_at_zero.xz = R_FR_at_zero.yz = R_FR_at_zero.zx = R_FR_at_zero.zy = T{};

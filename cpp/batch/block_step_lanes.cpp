@@ -186,10 +186,7 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
     normalise<T>(block, at.stage);
     flies &= is_sound(block.bounds, outcome(block, moved));
     steps -= flies;
-    for (std::size_t row = 0; row < numbers; row += widest_lanes) {
-      laws::store(at.state + row, laws::chosen_by(flies, laws::load<T>(at.stage + row),
-                                                  laws::load<T>(at.state + row)));
-    }
+    copy_flying<T>(at.stage, at.state, numbers, flies);
     add_rates<T>(block, first, flies, [&](std::size_t i) QUADCORE_INLINED {
       return state.number(StateRow::joint(StateRow::joint_rate, i));
     });

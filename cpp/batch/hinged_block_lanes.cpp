@@ -155,18 +155,7 @@ template <class T>
 QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count, double dt) {
   const Places<T> at(block, first);
   const std::size_t numbers = HingedRow::state(block.rotors) * widest_lanes;
-  const auto copy = [&](const double* from, double* to) QUADCORE_INLINED {
-    for (std::size_t row = 0; row < numbers; row += widest_lanes) {
-      laws::store(to + row, laws::load<T>(from + row));
-    }
-  };
-  const auto copy_some = [&](const double* from, double* to, const Mask<T>& some) QUADCORE_INLINED {
-    for (std::size_t row = 0; row < numbers; row += widest_lanes) {
-      laws::store(to + row,
-                  laws::chosen_by(some, laws::load<T>(from + row), laws::load<T>(to + row)));
-    }
-  };
-  copy(at.state, at.moved);
+  copy_flying<T>(at.state, at.moved, numbers, ~Mask<T>{});
   Bodies<T> bodies = at.bodies(block, at.moved);
   bodies.read();
   JointRates<T> rates;
@@ -191,11 +180,7 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
     rates.read(bodies);
     flies &= is_sound(block.bounds, outcome(bodies, rates));
     steps -= flies;
-    if (laws::any(~flies)) {
-      copy_some(at.moved, at.state, flies);
-    } else {
-      copy(at.moved, at.state);
-    }
+    copy_flying<T>(at.moved, at.state, numbers, flies);
     add_rates<T>(block, first, flies, [&](std::size_t i) QUADCORE_INLINED { return rates.of[i]; });
   }
   laws::store_bits<T>(block.steps + first, steps);

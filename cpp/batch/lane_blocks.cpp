@@ -45,6 +45,7 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
     laws_.acting |= vehicle->laws.acting;
     laws_.drag |= vehicle->laws.drag;
     laws_.airframe |= vehicle->laws.airframe;
+    laws_.aligned &= vehicle->laws.aligned;
     bounds_.fastest = std::min(bounds_.fastest, vehicle->fastest);
     bounds_.no_tilt |= vehicle->no_tilt;
     bounds_.reach = std::max(bounds_.reach, vehicle->reach);

@@ -32,6 +32,8 @@ void put_gyrostat(const Model& model, LaneVehicle& vehicle) {
   vehicle.reach = std::max(-unbounded, find_reach(model, body));
   vehicle.laws.upright = body.upright;
   vehicle.laws.normals_turn = body.normals_turn;
+  vehicle.laws.aligned = std::all_of(body.R_FR_at_zero.begin(), body.R_FR_at_zero.end(),
+                                     [](const Matrix3d& R) { return R == Matrix3d::Identity(); });
   Rows rows(vehicle.constants);
   rows.put(Row::inverse_mass, body.inverse_mass);
   rows.put(Row::p_FCcm_F, body.p_FCcm_F);

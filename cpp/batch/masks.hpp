@@ -39,6 +39,22 @@ QUADCORE_LAW void add_rates(const Block& block, std::size_t first, const Mask<T>
   }
 }
 
+/// Copy the numbers of the vehicles that fly, which in most steps are all.
+template <class T>
+QUADCORE_LAW void copy_flying(const double* from, double* to, std::size_t numbers,
+                              const Mask<T>& flies) {
+  if (__builtin_expect(laws::any(~flies), 0)) {
+    for (std::size_t row = 0; row < numbers; row += widest_lanes) {
+      laws::store(to + row,
+                  laws::chosen_by(flies, laws::load<T>(from + row), laws::load<T>(to + row)));
+    }
+  } else {
+    for (std::size_t row = 0; row < numbers; row += widest_lanes) {
+      laws::store(to + row, laws::load<T>(from + row));
+    }
+  }
+}
+
 /// Return the vehicles that have further steps to take, and stay in their balls without obstacles
 /// for a distance `ahead` [m]. The block has such balls.
 template <class T>
