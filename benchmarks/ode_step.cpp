@@ -18,7 +18,7 @@ namespace {
 
 constexpr double spawn_height = 10;  // m
 constexpr double largest_distance = 1e-9;
-constexpr double largest_ratio = 0.25;
+constexpr double largest_ratio = 0.12;
 
 struct Segment {
   int steps;
