@@ -22,7 +22,7 @@ def controller():
     effects[3] = -V["torque"] * SPINS
     vehicle = SimpleNamespace(
         mass=V["mass"],
-        gravity=V["gravity"],
+        gravity=np.array([0.0, 0.0, -V["gravity"]]),
         inertia=np.array(V["inertia"]),
         spins=SPINS,
         allocation=effects,
