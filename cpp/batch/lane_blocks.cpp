@@ -1,7 +1,6 @@
 #include "lane_blocks.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "hinged_block.hpp"
 #include "lanes/for_each_width.hpp"
@@ -129,13 +128,10 @@ void LaneBlocks::begin(std::size_t vehicle, const std::vector<double>& engine_st
 }
 
 void LaneBlocks::lift_bounds(std::size_t vehicle, const std::vector<Quiet>& quiet) {
-  const auto is_lifted = [](const double* has_said) { return has_said && *has_said != 0; };
-  const bool spins = std::all_of(quiet.begin(), quiet.end(), [&](const Quiet& of) {
-    return std::isinf(of.fastest) || is_lifted(of.has_said_fast);
-  });
-  const bool tilts = std::all_of(quiet.begin(), quiet.end(), [&](const Quiet& of) {
-    return !of.no_tilt || is_lifted(of.has_said_tilt);
-  });
+  const bool spins =
+      std::none_of(quiet.begin(), quiet.end(), [](const Quiet& of) { return of.bounds_rates(); });
+  const bool tilts =
+      std::none_of(quiet.begin(), quiet.end(), [](const Quiet& of) { return of.bounds_tilt(); });
   may_spin_[vehicle] |= -std::int64_t{spins};
   may_tilt_[vehicle] |= -std::int64_t{tilts};
 }

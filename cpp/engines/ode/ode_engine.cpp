@@ -176,12 +176,7 @@ void OdeEngine::step(double time, double dt, const ForceField& forces) {
 bool OdeEngine::float_by_laws(double dt, const ForceLaws& laws) {
   // The order of several laws on the frame is that of their plugins.
   if (!laws.complete || laws.frame_drags.size() > 1 || laws.airframes.size() > 1) return false;
-  if (!is_afloat(dt) || !hinged_.push(views_of(laws), kinematics_)) return false;
-  if (!hinged_.advance(dt, true)) return false;
-  behind_ = true;
-  step_free(dt);
-  hinged_.show(kinematics_);
-  return true;
+  return is_afloat(dt) && hinged_.push(views_of(laws), kinematics_) && float_on(dt);
 }
 
 void OdeEngine::evaluate(double time, const ForceField& forces) {
@@ -192,19 +187,21 @@ void OdeEngine::evaluate(double time, const ForceField& forces) {
 }
 
 void OdeEngine::move(double dt, bool near) {
-  if (!near && is_afloat(dt) && float_by(dt)) {
-    step_free(dt);
-  } else {
-    step_in_ode(dt, near);
+  if (!near && is_afloat(dt)) {
+    hinged_.push(loads_);
+    if (float_on(dt)) return;
   }
+  step_in_ode(dt, near);
   hinged_.show(kinematics_);
 }
 
-/// Returns false without a motion if Gazebo limits the correction of a hinge.
-bool OdeEngine::float_by(double dt) {
-  hinged_.push(loads_);
+/// Take a step in flight under the present forces on the vehicle. Returns false without a motion if
+/// Gazebo limits the correction of a hinge.
+bool OdeEngine::float_on(double dt) {
   if (!hinged_.advance(dt, true)) return false;
   behind_ = true;
+  step_free(dt);
+  hinged_.show(kinematics_);
   return true;
 }
 

@@ -91,7 +91,7 @@ class OdeEngine final : public Engine {
   double remaining_error(double dt);
   void take_threading();
   bool is_afloat(double dt) const;
-  bool float_by(double dt);
+  bool float_on(double dt);
   bool float_by_laws(double dt, const ForceLaws& laws);
   void step_in_ode(double dt, bool near);
   void step_free(double dt);

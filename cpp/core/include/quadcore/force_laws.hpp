@@ -12,14 +12,24 @@ namespace quadcore QUADCORE_EXPORT {
 /// Bounds of the motion within which a plugin's update() has no effect, unless it has unread
 /// messages or published one in the last update().
 struct Quiet {
-  double fastest =
-      std::numeric_limits<double>::infinity();  ///< upper limit of all joint rates [rad/s]
-  bool no_tilt = false;  ///< whether no rotor's normal may point below the horizon
+  /// `fastest` without a limit.
+  static constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+  double fastest = unlimited;  ///< upper limit of all joint rates [rad/s]
+  bool no_tilt = false;        ///< whether no rotor's normal may point below the horizon
   /// State value that is nonzero once the plugin has warned about a joint beyond `fastest`, which
   /// then no longer applies; null if it always applies.
   const double* has_said_fast = nullptr;
   /// The same for `no_tilt`.
   const double* has_said_tilt = nullptr;
+
+  /// Return whether `fastest` applies now.
+  bool bounds_rates() const { return fastest < unlimited && !is_set(has_said_fast); }
+  /// Return whether `no_tilt` applies now.
+  bool bounds_tilt() const { return no_tilt && !is_set(has_said_tilt); }
+
+  /// Return whether a state value tells that a plugin has warned.
+  static bool is_set(const double* has_said) { return has_said && *has_said != 0; }
 };
 
 /// Force laws and sensors that quadcore's own plugins provide in addition to forces() and sense(),

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "flight_checks.hpp"
@@ -13,13 +12,9 @@ namespace {
 
 /// Return whether a motion is within the bounds.
 bool holds(const Quiet& quiet, const Kinematics& motion) {
-  const auto is_lifted = [](const double* has_said) { return has_said && *has_said != 0; };
   const RotorMotions& rotors = motion.rotors;
-  if (std::isfinite(quiet.fastest) && !is_lifted(quiet.has_said_fast) &&
-      !rotors.slower_than(quiet.fastest)) {
-    return false;
-  }
-  if (!quiet.no_tilt || is_lifted(quiet.has_said_tilt)) return true;
+  if (quiet.bounds_rates() && !rotors.slower_than(quiet.fastest)) return false;
+  if (!quiet.bounds_tilt()) return true;
   const Vector3d up_F = motion.R_WF.row(2);
   for (std::size_t i = 0; i < rotors.size(); ++i) {
     if (!(up_F.dot(rotors.vector(MotionRow::normal, i)) >= 0)) return false;
