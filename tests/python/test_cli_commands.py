@@ -132,9 +132,9 @@ def test_doctor_and_the_installation_page_list_every_extra():
     assert set(re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)) == extras
 
 
-def test_doctor_finds_damaged_packages_and_missing_ones(monkeypatch):
-    Path("broken.py").write_text("raise RuntimeError('built for numpy 1')")
-    monkeypatch.syspath_prepend(".")
+def test_doctor_finds_damaged_packages_and_missing_ones(tmp_path, monkeypatch):
+    (tmp_path / "broken.py").write_text("raise RuntimeError('built for numpy 1')")
+    monkeypatch.syspath_prepend(tmp_path)
     assert doctor._try_import("broken", "absent", "remedy").state == "wrong"
     missing = doctor._try_import("no_such_module", "absent", "pip install it")
     assert missing == ("no_such_module", "absent", "pip install it")

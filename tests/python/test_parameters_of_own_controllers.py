@@ -71,12 +71,11 @@ def test_parameters_in_the_name_reach_constructor_attributes_and_timing():
     assert parsed("mine.py:Lee", values={"kx": 8}).kx == 8
 
 
-def test_rows_with_parameters_are_those_of_an_object_with_them():
+def test_rows_with_parameters_are_those_of_an_object_with_them(tmp_path, monkeypatch):
     named = evaluate("mine:Lee:kx=9,kv=5", "mine.py:Lee")
-    sys.path.insert(0, ".")
+    monkeypatch.syspath_prepend(tmp_path)
     import mine
 
-    sys.path.remove(".")
     other = evaluate({"one": mine.Lee(9, 5.0), "other": mine.Lee()})
     for one, same in zip(named, other):
         assert one["failure"] == same["failure"] == ""
