@@ -23,8 +23,9 @@ from ..flight_folder import (
 from ..step_error import compute_step_error
 from ..table import format_number, format_settings
 from ..time_limit import time_limit
-from .problem import Flown, Problem, Trial
+from .problem import Problem
 from .search import Tuning
+from .trials import Flown, Trial, judge
 
 GAINS = "gains.yaml"
 PAGE = "report.html"
@@ -137,7 +138,7 @@ def _measure(problem: Problem, gains: Mapping[str, float]) -> Dict[str, str]:
     def take(index: int, found: Union[Flown, QuadcoreError]) -> None:
         text = "failed"
         if not isinstance(found, QuadcoreError):
-            judged = problem.judge(trials[index], found)
+            judged = judge(trials[index], found, problem.options.failure_distance)
             text = text if judged.failure else format_number(judged.error)
         errors[trials[index].label] = text
 

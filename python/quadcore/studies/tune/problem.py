@@ -3,21 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
-from typing import (
-    Any,
-    Dict,
-    Iterator,
-    List,
-    Mapping,
-    NamedTuple,
-    Optional,
-    Sequence,
-    Tuple,
-    Union,
-)
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -29,9 +18,6 @@ from ...control.gains import Gains
 from ...report.decimation import decimate
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
-from ...simulation.simulation import Simulation
-from ...simulation.state import State
-from ...support import rotation
 from ...support.arguments import shorten
 from ..axes import Values
 from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
@@ -40,61 +26,14 @@ from ..design import Design
 from ..executor import count_cores
 from ..grouped_flights import fly_group, share_out
 from ..options import ControlOptions
-from ..tracking_metrics import compute_errors, describe_failure, find_failure_time
 from ..variation import pick_controller_values
 from .own_parameters import read_own
+from .trials import RETURN_TIME, Flown, Trial, TrialResult, judge
 
 _GAIN = re.compile(r"(k[pidrw]|[qr])_\w+")
 
-OFFSET, TURN = (0.3, -0.2, 0.25), (0.1, -0.1, 0.2)
-"""Offset of the start from the reference in the world (m), and turn about frame axes (rad)."""
-_RETURN_TIME = 10.0  # s; time to return from the offset
-_LAST = 2.0  # s; final part of it, in which the distance is measured
-_REMAINDER = 0.5  # maximum share of the offset that may remain: z of `pd` has a pole at -0.22 1/s
 _UNLISTED = ("duration", "dt", "seed", "scenario", "processes", "progress")
 """Options that the history omits or lists separately."""
-
-
-class Trial(NamedTuple):
-    """Flight for the evaluation of gains."""
-
-    label: str
-    """Name of the reference; also of model, point and seed if there are several."""
-    plan: FlightPlan
-    """Plan without a controller."""
-    values: Mapping[str, float]
-    """Values of the point for the controller."""
-    has_offset: bool = False
-    """Whether it begins `OFFSET` the reference."""
-
-
-class Flown(NamedTuple):
-    """Flight of a trial."""
-
-    log: Log
-    failure: str
-    """Reason of a failure; "" for success."""
-
-
-class TrialResult(NamedTuple):
-    """Result of gains in a trial."""
-
-    error: float
-    """RMS tracking error, m; after a failure, the error is the failure distance."""
-    failure: str
-    """Reason of a failure; "" for success."""
-
-
-@dataclass(frozen=True, eq=False)
-class _OffsetPlan(FlightPlan):
-    """Plan of a flight from an offset."""
-
-    def list_placements(self, simulation: Simulation) -> Iterator[State]:
-        yield from super().list_placements(simulation)
-        state = simulation.state.copy()
-        state.position = state.position + OFFSET
-        state.orientation = rotation.turn(state.orientation, np.array(TURN))
-        yield state
 
 
 class Problem:
@@ -195,7 +134,7 @@ class Problem:
 
     def fly(self, trial: Trial, gains: Mapping[str, float]) -> TrialResult:
         """Simulate and judge a trial; raises as `simulate`."""
-        return self.judge(trial, self.simulate(trial, gains))
+        return judge(trial, self.simulate(trial, gains), self.options.failure_distance)
 
     def simulate(self, trial: Trial, gains: Mapping[str, float]) -> Flown:
         """Simulate a trial; raises `InputError` if the controller rejects gains or vehicle."""
@@ -206,55 +145,15 @@ class Problem:
                 raise
             return Flown(error.log, str(error))
 
-    def judge(self, trial: Trial, flown: Flown) -> TrialResult:
-        """Compute the result of a trial, which needs no code of the controller."""
-        log, failure = flown
-        worst = self.options.failure_distance
-        away = np.minimum(np.nan_to_num(compute_errors(log), nan=worst), worst)
-        late = find_failure_time(log, worst)
-        if late is not None:
-            failure = describe_failure(log, worst)
-            away[log.time >= late] = worst
-        # The missing part of a failed flight counts as failed.
-        rest = max(0.0, 1 - (log.time[-1] - log.time[0]) / trial.plan.duration) if failure else 0.0
-        square = (1 - rest) * np.mean(away**2) + rest * worst**2
-        return TrialResult(float(np.sqrt(square)), failure)
-
     def simulate_return(self, trial: Trial, gains: Mapping[str, float]) -> List[Flown]:
         """Simulate a trial from the reference and from an offset, until the first failure."""
-        longer = trial._replace(plan=replace(trial.plan, duration=_RETURN_TIME))
+        longer = trial._replace(plan=replace(trial.plan, duration=RETURN_TIME))
         flown: List[Flown] = []
         for has_offset in (False, True):
             flown.append(self.simulate(longer._replace(has_offset=has_offset), gains))
             if flown[-1].failure:
                 break
         return flown
-
-    def judge_return(self, flown: Sequence[Flown]) -> str:
-        """Check that a flight from an offset returns to the flight from the reference.
-
-        On the reference, a controller with a perfect model hardly needs its gains. Their purpose is
-        to correct an offset.
-
-        Parameters
-        ----------
-        flown
-            Result of `simulate_return`.
-
-        Returns
-        -------
-        str
-            Reason of a failure; "" for success.
-        """
-        if flown[-1].failure:
-            return flown[-1].failure
-        logs = [each.log for each in flown]
-        apart = np.linalg.norm(logs[0].position - logs[1].position, axis=1)
-        left = float(apart[logs[0].time > logs[0].time[-1] - _LAST].max())
-        if left <= _REMAINDER * apart[0]:
-            return ""
-        offset = float(apart[0])
-        return f"{left:.3g} m of an offset of {offset:.3g} m remain after {_RETURN_TIME:g} s"
 
     def fly_together(
         self, flights: Sequence[Tuple[Trial, Mapping[str, float]]], limit: float
@@ -277,7 +176,7 @@ class Problem:
         if records is None:
             return None
         return [
-            self.judge(trial, Flown(record.log, record.failure))
+            judge(trial, Flown(record.log, record.failure), self.options.failure_distance)
             for record, (trial, _) in zip(records, flights)
         ]
 
@@ -295,11 +194,7 @@ class Problem:
 
     def make_plan(self, trial: Trial, gains: Mapping[str, float]) -> FlightPlan:
         """Make the plan of a trial; raises `InputError` if the controller rejects the gains."""
-        controller = self._make_controller({**gains, **trial.values})
-        if not trial.has_offset:
-            return replace(trial.plan, controller=controller)
-        values = {each.name: getattr(trial.plan, each.name) for each in fields(trial.plan)}
-        return _OffsetPlan(**{**values, "controller": controller})
+        return trial.make_plan(self._make_controller({**gains, **trial.values}))
 
     def watch(self, trial: Trial, gains: Mapping[str, float]) -> Log:
         """Simulate a trial with gains and return its decimated log; raises `QuadcoreError`."""

@@ -14,7 +14,8 @@ from ...support.warning import suppress_warnings
 from ..executor import contain_errors, run_contained
 from ..options import Progress
 from ..time_limit import time_limit
-from .problem import Flown, Problem, Trial, TrialResult
+from .problem import Problem
+from .trials import Flown, Trial, TrialResult, judge, judge_return
 
 OBJECTIVE = (
     "mean over the cases, from the start of the reference and from an offset, of the RMS tracking "
@@ -168,7 +169,7 @@ class Search:
 
         def take(index: int, outcome: Union[List[Flown], QuadcoreError]) -> None:
             failed = isinstance(outcome, QuadcoreError)
-            left[index] = str(outcome) if failed else problem.judge_return(outcome)  # type: ignore
+            left[index] = str(outcome) if failed else judge_return(outcome)  # type: ignore
 
         def fly(index: int) -> List[Flown]:
             with suppress_warnings(), time_limit(self._limit):
@@ -203,8 +204,9 @@ class Search:
             if isinstance(found, QuadcoreError):
                 found = [describe(found)] * len(groups[task])
             for index, one in zip(groups[task], found):
-                is_flown = isinstance(one, Flown)
-                outcomes[index] = problem.judge(flights[index][0], one) if is_flown else one
+                if isinstance(one, Flown):
+                    one = judge(flights[index][0], one, problem.options.failure_distance)
+                outcomes[index] = one
 
         def fly(task: int) -> List[Any]:
             chosen = [flights[index] for index in groups[task]]
