@@ -160,7 +160,7 @@ class HingedBodies {
             state.number(BodyRow::orientation + 2), state.number(BodyRow::orientation + 3)};
   }
   /// Return the angle of a body's hinge for ODE's stops; lanes have no stops.
-  QUADCORE_LAW T joint_angle(std::size_t i) const {
+  QUADCORE_LAW T joint_angle([[maybe_unused]] std::size_t i) const {
     if constexpr (laws::lanes_of<T> > 1) {
       return T{};
     } else {
