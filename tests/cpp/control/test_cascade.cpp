@@ -84,7 +84,7 @@ TEST_CASE("the torques of the cascade are those of Lagrange's equation (2.50) at
     CHECK((near_wanted * Vector3d::UnitZ()).isApprox(lift.normalized(), 1e-12));
 
     Vector3d turn = wanted_eta - eta;
-    for (double& angle : turn) angle = std::atan2(std::sin(angle), std::cos(angle));
+    for (int k = 0; k < 3; ++k) turn[k] = std::atan2(std::sin(turn[k]), std::cos(turn[k]));
     const Vector3d y = Vector3d(96, 96, 2).cwiseProduct(turn) +
                        Vector3d(96, 96, 0).cwiseProduct(angle_sum + period * turn) +
                        Vector3d(16, 16, 3).cwiseProduct(Vector3d(0, 0, wanted.yaw_rate) - rates);
