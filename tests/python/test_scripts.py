@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import ast
 import importlib
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -37,3 +40,22 @@ def test_a_program_imports_of_quadcore_what_there_is(path):
         for name in (alias.name for alias in node.names):
             if not hasattr(module, name):
                 importlib.import_module(f"{node.module}.{name}")
+
+
+def test_the_bindings_configure_with_the_sanitizers_of_the_scripts(tmp_path):
+    pybind11 = pytest.importorskip("pybind11")
+    sanitizers = re.search(
+        r"^sanitizers=(.*)$", (ROOT / "scripts" / "sanitized.sh").read_text(), re.MULTILINE
+    )
+    options = {
+        "QUADCORE_BUILD_PYTHON": "ON",
+        "QUADCORE_SANITIZE": sanitizers[1],
+        "QUADCORE_WITH_ROS": "OFF",
+        "Python_EXECUTABLE": sys.executable,
+        "pybind11_DIR": pybind11.get_cmake_dir(),
+    }
+    words = [f"-D{name}={value}" for name, value in options.items()]
+    done = subprocess.run(
+        ["cmake", "-S", ROOT, "-B", tmp_path, *words], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
