@@ -1,5 +1,3 @@
-#include <thread>
-
 #include "batch_implementation.hpp"
 #include "quadcore/control/guided_controller.hpp"
 #include "quadcore/control/schedule.hpp"
@@ -13,9 +11,8 @@ void Batch::Implementation::follow(const std::vector<BatchGuide>& guides,
                                    std::int64_t log_every, std::vector<BatchGuided>& guided,
                                    const std::function<void()>& poll) {
   check_start();
-  const std::thread::id caller = std::this_thread::get_id();
+  batch::SharedPoll shared_poll(poll);
   for_each_block([&](std::size_t block, std::size_t first, std::size_t end, double* work) {
-    if (std::this_thread::get_id() == caller) poll();
     std::vector<batch::Follower> followers;
     std::vector<std::size_t> apart;
     for (std::size_t i = first; i < end; ++i) {
@@ -29,21 +26,35 @@ void Batch::Implementation::follow(const std::vector<BatchGuide>& guides,
         lanes_->let_fly(i, false);
       }
     }
-    if (!followers.empty()) {
-      batch::GuidedBlock(*lanes_, block, dt(), work).advance(followers, steps, log_every);
-    }
+    follow_in_lanes(block, work, followers, steps, log_every, shared_poll);
     for (const batch::Follower& follower : followers) {
-      if (follower.has_left) {
-        apart.push_back(follower.vehicle);
-        continue;
-      }
-      steps_[follower.vehicle] += steps;
-      if (!follower.speeds.empty()) note_command(follower.vehicle, follower.speeds.data());
+      if (follower.has_left) apart.push_back(follower.vehicle);
     }
     for (const std::size_t i : apart) {
-      follow_apart(i, guides[i], odometry, steps, log_every, guided[i]);
+      follow_apart(i, guides[i], odometry, steps, log_every, guided[i], shared_poll);
     }
   });
+}
+
+void Batch::Implementation::follow_in_lanes(std::size_t block, double* work,
+                                            std::vector<batch::Follower>& followers,
+                                            std::int64_t steps, std::int64_t log_every,
+                                            batch::SharedPoll& poll) {
+  if (followers.empty()) return;
+  const auto finish = [&] {
+    for (const batch::Follower& follower : followers) {
+      steps_[follower.vehicle] += follower.steps;
+      if (follower.has_left || follower.speeds.empty()) continue;
+      note_command(follower.vehicle, follower.speeds.data());
+    }
+  };
+  try {
+    batch::GuidedBlock(*lanes_, block, dt(), work).advance(followers, steps, log_every, poll);
+  } catch (...) {
+    finish();
+    throw;
+  }
+  finish();
 }
 
 void Batch::Implementation::follow_together(const CommandAll& command_all, double rate,
@@ -89,7 +100,8 @@ void Batch::Implementation::follow_together(const CommandAll& command_all, doubl
 
 void Batch::Implementation::follow_apart(std::size_t i, const BatchGuide& guide,
                                          const std::string& odometry, std::int64_t steps,
-                                         std::int64_t log_every, BatchGuided& guided) {
+                                         std::int64_t log_every, BatchGuided& guided,
+                                         batch::SharedPoll& poll) {
   Simulation& simulation = go_apart(i);
   if (members_[i].in_lanes) {
     simulation.reset(members_[i].made_of.seed);
@@ -100,16 +112,22 @@ void Batch::Implementation::follow_apart(std::size_t i, const BatchGuide& guide,
     if (is_commanded_[i]) simulation.command(command_of(i), command_width());
   }
   guided = BatchGuided{guided.log};
+  const auto finish = [&] {
+    const Topics& topics = simulation.topics();
+    const Topic& commands = topics[topics.at(Simulation::command_topic)];
+    note_command(i, commands.values.data());
+    settle(i);
+    if (members_[i].in_lanes) lanes_->command(i, command_of(i));
+  };
   try {
-    batch::follow_apart(simulation, guide, odometry, steps, log_every, guided);
+    batch::follow_apart(simulation, guide, odometry, steps, log_every, guided, poll);
   } catch (const FlightError& error) {
     failures_[i] = error.what();
+  } catch (...) {
+    finish();
+    throw;
   }
-  const Topics& topics = simulation.topics();
-  const Topic& commands = topics[topics.at(Simulation::command_topic)];
-  note_command(i, commands.values.data());
-  settle(i);
-  if (members_[i].in_lanes) lanes_->command(i, command_of(i));
+  finish();
 }
 
 void Batch::Implementation::note_command(std::size_t i, const double* speeds) {

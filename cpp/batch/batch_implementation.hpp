@@ -86,9 +86,14 @@ class Batch::Implementation {
   /// \param has_commands  whether this call has commands
   void go_on_apart(std::size_t i, bool has_commands, std::int64_t steps);
 
+  /// Fly the vehicles of a block that follow in the lanes.
+  void follow_in_lanes(std::size_t block, double* work, std::vector<batch::Follower>& followers,
+                       std::int64_t steps, std::int64_t log_every, batch::SharedPoll& poll);
+
   /// Fly a vehicle from its start in its own simulation.
   void follow_apart(std::size_t i, const BatchGuide& guide, const std::string& odometry,
-                    std::int64_t steps, std::int64_t log_every, BatchGuided& guided);
+                    std::int64_t steps, std::int64_t log_every, BatchGuided& guided,
+                    batch::SharedPoll& poll);
 
   void note_command(std::size_t i, const double* speeds);
 

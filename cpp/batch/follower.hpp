@@ -16,9 +16,10 @@ struct Follower {
   const BatchGuide* guide;
   BatchGuided* guided;
   const OdometryErrors* errors;
-  std::uint64_t seed;     ///< of the odometry
-  double draws;           ///< random numbers before the measurement at the start
-  bool has_left = false;  ///< whether it has left the lanes; its results are then incomplete
+  std::uint64_t seed;      ///< of the odometry
+  double draws;            ///< random numbers before the measurement at the start
+  std::int64_t steps = 0;  ///< in the lanes
+  bool has_left = false;   ///< whether it has left the lanes; its results are then incomplete
   /// Speeds in effect at the end; empty before the first command.
   std::vector<double> speeds = {};
 

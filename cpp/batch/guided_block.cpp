@@ -12,6 +12,13 @@
 #include "quadcore/total_variation.hpp"
 
 namespace quadcore::batch {
+namespace {
+
+/// Number of steps between polls, which take a block of vehicles some milliseconds.
+constexpr std::int64_t steps_between_polls = 1000;
+
+}  // namespace
+
 /// A follower and the memory of its controller.
 struct GuidedBlock::Control {
   Follower* follower;
@@ -61,26 +68,42 @@ control::ReferencePreview& GuidedBlock::preview_of(const BatchGuide& guide) {
   return *previews_.back().preview;
 }
 
-void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n,
-                          std::int64_t log_every) {
+void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n, std::int64_t log_every,
+                          SharedPoll& poll) {
   for (Follower& follower : followers) add(follower);
   const auto has_log = [](const Follower& follower) { return follower.guided->log != nullptr; };
   if (std::none_of(followers.begin(), followers.end(), has_log)) log_every = std::max(n, log_every);
-  std::int64_t step = 0;
+  std::int64_t step = 0, next_poll = 0;
   lanes_.show(block_, work_);
   for (const Follower& follower : followers) log(follower, 0);
   begin_rates();
-  while (step < n) {
-    const auto logged = static_cast<double>(std::min(n, (step / log_every + 1) * log_every));
-    const auto next = static_cast<std::int64_t>(update(static_cast<double>(step), logged));
+  const auto advance_to = [&](std::int64_t next) {
     this->step(followers, next - step);
     step = next;
     lanes_.show(block_, work_);
-    if (step % log_every != 0) continue;
+    if (step % log_every != 0) return;
     for (const Follower& follower : followers) {
       if (!follower.has_left) log(follower, static_cast<double>(step));
     }
+  };
+  try {
+    while (step < n) {
+      if (step >= next_poll) {
+        poll();
+        next_poll = step + steps_between_polls;
+      }
+      const std::int64_t logged = (step / log_every + 1) * log_every;
+      const auto end = static_cast<double>(std::min({n, logged, next_poll}));
+      advance_to(static_cast<std::int64_t>(update(static_cast<double>(step), end)));
+    }
+  } catch (...) {
+    finish(followers);
+    throw;
   }
+  finish(followers);
+}
+
+void GuidedBlock::finish(const std::vector<Follower>& followers) const {
   for (const Follower& follower : followers) {
     follower.guided->rate_variation = list_sums(rates_, follower.lane());
   }
@@ -109,6 +132,7 @@ void GuidedBlock::step(std::vector<Follower>& followers, std::int64_t count) {
   std::int64_t flown[widest_lanes];
   lanes_.step(block_, count, dt_, work_, flown, rates_.data());
   for (Follower& follower : followers) {
+    follower.steps += flown[follower.lane()];
     if (flown[follower.lane()] < count) follower.leave(lanes_);
   }
 }
@@ -178,7 +202,7 @@ void GuidedBlock::log(const Follower& follower, double step) const {
 }
 
 void follow_apart(Simulation& simulation, const BatchGuide& guide, const std::string& odometry,
-                  std::int64_t n, std::int64_t log_every, BatchGuided& guided) {
+                  std::int64_t n, std::int64_t log_every, BatchGuided& guided, SharedPoll& poll) {
   const std::size_t topic = control::GuidedController::find_odometry(simulation.topics(), odometry);
   control::GuidedController controller(simulation, *guide.controller,
                                        simulation.describe_vehicle());
@@ -195,12 +219,17 @@ void follow_apart(Simulation& simulation, const BatchGuide& guide, const std::st
     std::copy(rows.table.begin(), rows.table.end(), guided.log);
     guided.rows = rows.count;
   };
+  const auto call = [&](double period, double* speeds) {
+    count_call(guided.calls, guided.seconds,
+               [&] { controller.command(period, topic, *guide.reference, list_times, speeds); });
+    guided.saturated += controller.saturated();
+  };
   try {
-    loop.advance(n, [&](double period, double* speeds) {
-      count_call(guided.calls, guided.seconds,
-                 [&] { controller.command(period, topic, *guide.reference, list_times, speeds); });
-      guided.saturated += controller.saturated();
-    });
+    flight.make_room(n);
+    for (std::int64_t left = n; left > 0; left -= steps_between_polls) {
+      poll();
+      loop.advance(std::min(left, steps_between_polls), call);
+    }
   } catch (...) {
     finish();
     throw;

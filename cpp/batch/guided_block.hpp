@@ -7,6 +7,7 @@
 #include "lane_blocks.hpp"
 #include "lane_controls.hpp"
 #include "members.hpp"
+#include "shared_poll.hpp"
 
 namespace quadcore::batch {
 
@@ -18,8 +19,10 @@ class GuidedBlock {
   ~GuidedBlock();
 
   /// Advance by n steps. A follower leaves the lanes where its flight needs more than the lanes
-  /// model, or its controller fails. It then no longer moves.
-  void advance(std::vector<Follower>& followers, std::int64_t n, std::int64_t log_every);
+  /// model, or its controller fails. It then no longer moves. Throws what `poll` throws; the
+  /// followers are then where the last steps took them.
+  void advance(std::vector<Follower>& followers, std::int64_t n, std::int64_t log_every,
+               SharedPoll& poll);
 
  private:
   struct Control;
@@ -32,6 +35,7 @@ class GuidedBlock {
   void command(Control& control, double step, double period, double* speeds);
   void log(const Follower& follower, double step) const;
   void step(std::vector<Follower>& followers, std::int64_t count);
+  void finish(const std::vector<Follower>& followers) const;
   void begin_rates();
   double shown(std::size_t row, const Follower& follower) const {
     return work_[row * widest_lanes + follower.lane()];
@@ -55,9 +59,9 @@ class GuidedBlock {
 
 /// Advance a simulation by n steps under a controller.
 /// \param odometry  topic of the measured state
-/// Throws what the controller throws, and FlightError if the flight fails; `guided` then contains
-/// the flight up to this.
+/// Throws what the controller and `poll` throw, and FlightError if the flight fails; `guided` then
+/// contains the flight up to this.
 void follow_apart(Simulation& simulation, const BatchGuide& guide, const std::string& odometry,
-                  std::int64_t n, std::int64_t log_every, BatchGuided& guided);
+                  std::int64_t n, std::int64_t log_every, BatchGuided& guided, SharedPoll& poll);
 
 }  // namespace quadcore::batch

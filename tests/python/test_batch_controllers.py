@@ -116,3 +116,26 @@ def test_vehicles_under_way_take_no_controller():
     batch.step()
     with pytest.raises(qc.InputError, match="is not at its start"):
         batch.run(0.1, controller="pid", reference="spiral")
+
+
+@pytest.mark.parametrize(
+    "engine, n, controllers",
+    [("eigen", 1, "geometric"), ("eigen", 20, "px4"), ("gazebo11", 9, "pid"), ("ode", 3, "lqr")],
+)
+def test_a_long_run_can_be_interrupted_and_continued(alarm, engine, n, controllers):
+    """The vehicles stop where they are, at the times that the batch states."""
+    batch = qc.BatchSimulation("quadrotor", n, engine, NOISE, threads=2, xacro_args=SLOW)
+    alarm(0.2)
+    with pytest.raises(KeyboardInterrupt):
+        batch.run(1e6, controller=controllers, reference="spiral")
+    times = batch.time
+    assert 0 < times.max() < 1e5
+    last = int(times.argmax())
+    before = batch.state.position[last]
+    batch.step(steps=20)
+    np.testing.assert_array_equal(batch.time[last], times[last] + 20 * batch.dt)
+    sim = qc.Simulation("quadrotor", engine, parameters=NOISE, seed=last, xacro_args=SLOW)
+    sim.run(times[last], log_every=10**6, controller=controllers, reference="spiral")
+    np.testing.assert_array_equal(before, sim.state.position)
+    sim.step(20)
+    np.testing.assert_array_equal(batch.state.position[last], sim.state.position)
