@@ -157,7 +157,12 @@ py::tuple follow(GuardedBatch& self, const std::vector<BoundController*>& contro
                       delays.data()[i]});
   }
   for (std::size_t k = 0; k < logged.size(); ++k) {
-    guided.at(logged[k]).log = logs.mutable_data() + static_cast<py::ssize_t>(k) * rows * columns;
+    double*& log = guided.at(logged[k]).log;
+    if (log) {
+      throw InputError("logged lists vehicle " + std::to_string(logged[k]) +
+                       " twice. List each vehicle once.");
+    }
+    log = logs.mutable_data() + static_cast<py::ssize_t>(k) * rows * columns;
   }
   const BatchLock lock(self);
   without_gil([&] {

@@ -88,6 +88,36 @@ def test_a_vectorized_controller():
     assert_alike(log, sim.run(0.5, controller=Hover(), reference="hover"))
 
 
+@pytest.mark.parametrize("controller", ["geometric", Hover()])
+def test_a_vehicle_that_is_listed_twice_has_two_equal_logs(controller):
+    batch = qc.BatchSimulation("quadrotor", 2, xacro_args=SLOW)
+    logs = batch.run(0.1, log=[1, 0, 1], controller=controller, reference="hover")
+    for log, seed in zip(logs, (1, 0, 1)):
+        sim = qc.Simulation("quadrotor", "eigen", seed=seed, xacro_args=SLOW)
+        assert_alike(log, sim.run(0.1, controller=controller, reference="hover"))
+
+
+def follow_in_the_core(batch, controllers, logged):
+    """Call the core without the checks of `BatchSimulation.run`."""
+    n = len(controllers)
+    shape = qc.references.hover().shape
+    rates, delays = np.full(n, 500.0), np.zeros(n)
+    return batch._follow(controllers, [shape] * n, rates, delays, "odom", 10, 1, logged)
+
+
+def controller_of(model):
+    controller = qc.controllers.geometric()
+    controller.reset(qc.Simulation(model, "eigen"))
+    return controller.core
+
+
+def test_the_core_writes_one_log_of_each_vehicle():
+    batch = qc.BatchSimulation("quadrotor", 2)
+    with pytest.raises(qc.InputError, match="logged lists vehicle 1 twice"):
+        follow_in_the_core(batch, [controller_of("quadrotor")] * 2, [0, 1, 1])
+    assert batch.time.tolist() == [0, 0]
+
+
 @pytest.mark.parametrize(
     "options, message",
     [

@@ -105,10 +105,12 @@ def follow(
         rates, delays = (
             np.array([getattr(pilot, name) for pilot in pilots]) for name in ("rate", "delay")
         )
+        logged = list(dict.fromkeys(log))
         tables, rows, *_ = batch._follow(
-            names, references, rates, delays, SENSED, steps, log_every, list(log)
+            names, references, rates, delays, SENSED, steps, log_every, logged
         )
-        return [table[: rows[vehicle]] for table, vehicle in zip(tables, log)]
+        table_of = dict(zip(logged, tables))
+        return [table_of[vehicle][: rows[vehicle]] for vehicle in log]
     if len(set(map(id, pilots))) > 1 or not pilots[0].is_vectorized:
         raise InputError(
             "controller: a batch takes built-in controllers with built-in references, or one "
