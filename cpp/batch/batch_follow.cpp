@@ -10,7 +10,8 @@ void Batch::Implementation::follow(const std::vector<BatchGuide>& guides,
                                    const std::string& odometry, std::int64_t steps,
                                    std::int64_t log_every, std::vector<BatchGuided>& guided,
                                    const std::function<void()>& poll) {
-  check_start();
+  check_start(guided);
+  check_guides(guides);
   batch::SharedPoll shared_poll(poll);
   for_each_block([&](std::size_t block, std::size_t first, std::size_t end, double* work) {
     std::vector<batch::Follower> followers;
@@ -61,7 +62,7 @@ void Batch::Implementation::follow_together(const CommandAll& command_all, doubl
                                             double delay, const std::string& odometry,
                                             std::int64_t steps, std::int64_t log_every,
                                             std::vector<BatchGuided>& guided) {
-  check_start();
+  check_start(guided);
   for (std::size_t i = 0; i < size(); ++i) {
     come_back(i);
     if (!members_[i].in_lanes || find_sensor(i, odometry)) continue;
@@ -156,11 +157,30 @@ std::uint64_t Batch::Implementation::seed_of(std::size_t i, const batch::LaneSen
   return sensor.sensor.seed.value_or(seed);
 }
 
-void Batch::Implementation::check_start() const {
+void Batch::Implementation::check_start(const std::vector<BatchGuided>& guided) const {
+  if (guided.size() != size()) {
+    throw InputError("there are " + std::to_string(guided.size()) + " flights for " +
+                     std::to_string(size()) + " vehicles. Give one for each vehicle.");
+  }
   for (std::size_t i = 0; i < size(); ++i) {
     if (steps_[i] == 0 && placements_[i] >= 0) continue;
     throw InputError("vehicle " + std::to_string(i) +
                      " is not at its start, where controllers take over. Call reset first.");
+  }
+}
+
+void Batch::Implementation::check_guides(const std::vector<BatchGuide>& guides) const {
+  if (guides.size() != size()) {
+    throw InputError("there are " + std::to_string(guides.size()) + " controllers for " +
+                     std::to_string(size()) + " vehicles. Give one for each vehicle.");
+  }
+  for (std::size_t i = 0; i < size(); ++i) {
+    const std::size_t rotors = guides[i].controller->rotors();
+    if (rotors == command_width()) continue;
+    throw InputError("the controller of vehicle " + std::to_string(i) + " drives " +
+                     std::to_string(rotors) + " rotors, but the vehicle takes " +
+                     std::to_string(command_width()) +
+                     " commands. Give a controller of such a vehicle.");
   }
 }
 

@@ -105,7 +105,10 @@ class Batch::Implementation {
 
   std::uint64_t seed_of(std::size_t i, const batch::LaneSensor& sensor) const;
 
-  void check_start() const;
+  /// Throw InputError unless every vehicle is at its start and has a row of results.
+  void check_start(const std::vector<BatchGuided>& guided) const;
+  /// Throw InputError unless every vehicle has a controller that drives its rotors.
+  void check_guides(const std::vector<BatchGuide>& guides) const;
 
   /// Write the measured odometry of all vehicles.
   void measure_all(const std::string& topic, double* rows) const;

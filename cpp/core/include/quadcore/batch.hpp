@@ -89,7 +89,8 @@ class Batch {
   /// \param guided     one for each vehicle
   /// \param poll       called at times by the calling thread; may throw to end the call
   /// Throws InputError without changes for a vehicle that is not at time 0 or has moved since its
-  /// reset. Throws what a controller throws; the vehicles are then at different times.
+  /// reset, for a controller of another number of rotors, and for a wrong count of `guides` or
+  /// `guided`. Throws what a controller throws; the vehicles are then at different times.
   void follow(const std::vector<BatchGuide>& guides, const std::string& odometry,
               std::int64_t steps, std::int64_t log_every, std::vector<BatchGuided>& guided,
               const std::function<void()>& poll);
