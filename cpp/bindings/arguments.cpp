@@ -1,5 +1,8 @@
 #include "arguments.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "quadcore/plugin/error.hpp"
 
 namespace quadcore::bindings {
@@ -50,6 +53,11 @@ void check_shape(const py::array& array, const Shape& shape, const char* what) {
   if (shape_of(array) == shape) return;
   throw InputError(std::string(what) + " has the shape " + written(shape_of(array)) +
                    ". Give an array of shape " + written(shape) + ".");
+}
+
+void check_finite(const double* numbers, std::size_t count, const char* what, const char* member) {
+  if (std::all_of(numbers, numbers + count, [](double x) { return std::isfinite(x); })) return;
+  throw InputError(std::string(what) + member + " is not finite. Give finite numbers.");
 }
 
 double* writable(const py::object& object, const Shape& shape, const char* what) {

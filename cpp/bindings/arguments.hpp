@@ -32,6 +32,10 @@ Numbers numbers(const py::object& object, int dimensions, const char* what);
 /// of a size that C++ assumes.
 void check_shape(const py::array& array, const Shape& shape, const char* what);
 
+/// Throw InputError with the names `what` and `member`, joined, unless all numbers are finite.
+void check_finite(const double* numbers, std::size_t count, const char* what,
+                  const char* member = "");
+
 /// Return the array that C++ writes to, without a copy. Throws InputError unless it is a writable,
 /// contiguous array of doubles of this shape.
 double* writable(const py::object& object, const Shape& shape, const char* what);

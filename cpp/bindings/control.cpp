@@ -52,6 +52,7 @@ Vector3d vector(const py::object& object, const char* what) {
   const Numbers array = numbers(object, 1, what);
   if (array.size() != 3)
     throw InputError(std::string(what) + " does not have three numbers. Give x, y, z.");
+  check_finite(array.data(), 3, what);
   return Eigen::Map<const Vector3d>(array.data());
 }
 
@@ -60,6 +61,7 @@ Quaterniond orientation(const py::object& object, const char* what) {
   if (array.size() != 4)
     throw InputError(std::string(what) +
                      " does not have four numbers. Give a quaternion x, y, z, w.");
+  check_finite(array.data(), 4, what);
   return Quaterniond(Eigen::Map<const Eigen::Vector4d>(array.data()));
 }
 

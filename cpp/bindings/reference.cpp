@@ -76,9 +76,7 @@ control::Rows rows_of(const py::object& rows) {
   return Eigen::Map<const control::Rows>(table.data(), table.shape(0), table.shape(1));
 }
 
-}  // namespace
-
-messages::Reference to_reference(const py::object& object) {
+Reference read_reference(const py::object& object) {
   if (py::isinstance<Reference>(object)) return object.cast<Reference>();
   return read_members([&object](const char* name) -> py::object {
     try {
@@ -89,6 +87,16 @@ messages::Reference to_reference(const py::object& object) {
                        ". Give a quadcore.Reference or an object with the same members.");
     }
   });
+}
+
+}  // namespace
+
+messages::Reference to_reference(const py::object& object) {
+  Reference reference = read_reference(object);
+  Reference::for_each_field(
+      reference, [](const char* name, std::initializer_list<const char*> fields,
+                    const double* data) { check_finite(data, fields.size(), "reference.", name); });
+  return reference;
 }
 
 void bind_reference(py::module_& m) {

@@ -247,3 +247,45 @@ def test_parameters_are_documented_where_they_are_given():
     assert "rate : float, default 1.5" in references.circle.__doc__
     with pytest.raises(AttributeError, match="controller 'pdd' does not exist"):
         controllers.pdd  # noqa: B018
+
+
+def reference_without(member, index):
+    """A hover of which one number is missing from 0.2 s on."""
+
+    def wanted(t):
+        point = qc.Reference(position=[0, 0, 10])
+        if t > 0.2:
+            values = np.array(getattr(point, member))
+            values[index] = np.nan
+            setattr(point, member, values)
+        return point
+
+    return wanted
+
+
+@pytest.mark.parametrize(
+    "controller, member, index",
+    [
+        *((name, "position", 2) for name in controllers.NAMES),
+        ("geometric", "velocity", 0),
+        ("indi", "snap", 1),
+        ("lqr", "yaw", ()),
+    ],
+)
+def test_a_reference_that_is_not_finite_ends_the_flight_and_is_named(controller, member, index):
+    sim = qc.Simulation("quadrotor", "eigen", xacro_args={"sim_slow": 1})
+    with pytest.raises(qc.QuadcoreError, match=f"reference.{member} is not finite") as failed:
+        sim.run(1.0, controller=controller, reference=reference_without(member, index))
+    assert sim.time == pytest.approx(0.2, abs=0.02)  # the next call
+    assert len(failed.value.log) > 100
+
+
+@pytest.mark.parametrize("controller", controllers.NAMES)
+def test_a_state_that_is_not_finite_is_no_state_for_a_controller(controller):
+    sim = qc.Simulation("quadrotor", "eigen", xacro_args={"sim_slow": 1})
+    law = qc.controllers.parse(controller, "quadrotor")
+    law.reset(sim)
+    state = sim.state.copy()
+    state.linear_velocity[1] = np.inf
+    with pytest.raises(qc.InputError, match="state.linear_velocity is not finite"):
+        law.core.command(0.01, state, qc.Reference())
