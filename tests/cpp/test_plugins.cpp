@@ -91,6 +91,22 @@ TEST_CASE("what a library with hidden symbols throws keeps its type on the way o
   CHECK(refusal([&] { flown.set_state(later); }) == "no luck");
 }
 
+TEST_CASE("a description that a plugin ends by an error leaves the vehicle where it is") {
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    const std::string tags = "<hook>probe</hook><after>0.0105</after>";
+    Simulation probed = simulation("throwing", tags, info.name);
+    Simulation other = simulation("throwing", tags, info.name);
+    probed.step(20);
+    other.step(20);
+    CHECK(refusal([&] { probed.describe_vehicle(); }) == "no luck");
+    CHECK(probed.snapshot().engine == other.snapshot().engine);
+    probed.step(5);
+    other.step(5);
+    CHECK(probed.state().position == other.state().position);
+  }
+}
+
 TEST_CASE("a torque beyond all bounds ends the flight, and the simulation can be taken up again") {
   const LeaksAllowed allowed;
   const auto fly = [](const std::string& hook, const std::string& engine, bool ground) {

@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from flights import ENGINES
 from hooked import G, with_plugins
 from vehicles import CROSS, Rotor, plugin, start, vehicle, wrenches
 
@@ -231,3 +232,17 @@ def test_each_rotor_saturates_at_the_limit_of_its_own_motor():
         saturated.append(evaluate_circle("firefly", controller, **plan)["saturated"])
         assert [r.max_speed for r in pilot.rotors].count(400) == 1
     assert saturated == [0, 1]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("name", ["rotors", "vehicle"])
+def test_a_description_in_wind_does_not_change_the_next_step(engine, name):
+    """Plugins feel the wind from the first step on, although the probes have still air."""
+    plan = qc.FlightPlan.of(engine=engine, wind=(3, 1, 0), controller="pid", reference="hover")
+    probed, other = plan.simulation(), plan.simulation()
+    getattr(probed, name)
+    for sim in (probed, other):
+        sim.step(20)
+    assert probed.warnings == other.warnings
+    assert any(warning.startswith("t = 0.000000 s") for warning in other.warnings)
+    np.testing.assert_array_equal(probed.state.position, other.state.position)

@@ -25,7 +25,9 @@ class ThrowingPlugin final : public Plugin {
     if (hook_ == "sense" && sample.time > after_) throw std::runtime_error("no luck");
     if (hook_ == "input" && sample.time > after_) throw InputError("no luck");
   }
-  void forces(const Kinematics&, ConstPluginState state, Loads& loads) const override {
+  void forces(const Kinematics& motion, ConstPluginState state, Loads& loads) const override {
+    // A description of the vehicle probes it with the initial state of the plugins.
+    if (hook_ == "probe" && motion.time > after_ && state[0] == 0) throw InputError("no luck");
     if (hook_ == "forces" && state[0] > after_) throw std::runtime_error("no luck");
     if (state[0] <= after_) return;
     if (hook_ == "nan") loads.add_frame_torque(0, Vector3d::Constant(NAN));
@@ -39,10 +41,10 @@ class ThrowingPlugin final : public Plugin {
 
 PluginDescriptor describe() {
   return {"throws",
-          {TagSpec::choice(
-               "hook",
-               {"none", "create", "update", "number", "sense", "input", "forces", "nan", "huge"},
-               "which hook throws"),
+          {TagSpec::choice("hook",
+                           {"none", "create", "update", "number", "sense", "input", "forces",
+                            "probe", "nan", "huge"},
+                           "which hook throws"),
            TagSpec::number("after", "s", "0", "when").at_least(0)},
           {"luck"},
           create<ThrowingPlugin>};

@@ -63,6 +63,30 @@ class Kept {
   const VectorXd kept_;
 };
 
+/// Restores an engine, with time and air velocity of its motion, at the end of a block.
+class KeptEngine {
+ public:
+  explicit KeptEngine(Engine& engine)
+      : engine_(engine),
+        kept_(engine.save()),
+        time_(engine.kinematics().time),
+        v_WA_F_(engine.kinematics().v_WA_F) {}
+  ~KeptEngine() {
+    engine_.restore(kept_);
+    Kinematics& motion = engine_.kinematics();
+    motion.time = time_;
+    motion.v_WA_F = v_WA_F_;
+  }
+  KeptEngine(const KeptEngine&) = delete;
+  KeptEngine& operator=(const KeptEngine&) = delete;
+
+ private:
+  Engine& engine_;
+  const std::vector<double> kept_;
+  const double time_;
+  const Vector3d v_WA_F_;
+};
+
 }  // namespace
 
 void Simulation::prepare_plugins() {
@@ -83,7 +107,7 @@ const VehicleDescription& Simulation::describe_vehicle() {
 }
 
 VehicleDescription Simulation::probe_vehicle() {
-  const std::vector<double> as_it_is = engine_->save();
+  const KeptEngine as_it_is(*engine_);
   // Use the initial plugin state: later changes of it are not part of the vehicle.
   const Kept state_of_plugins(plugin_state_);
   plugin_state_.setZero();
@@ -115,7 +139,6 @@ VehicleDescription Simulation::probe_vehicle() {
     if (rotor.slowdown == 0) rotor.slowdown = slowed > 0 ? 1 / slowed : 1;
   }
   vehicle.air = probe_air(vehicle);
-  engine_->restore(as_it_is);
   return vehicle;
 }
 
