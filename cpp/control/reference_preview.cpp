@@ -22,7 +22,8 @@ ReferencePreview::~ReferencePreview() = default;
 const ReferencePreview::Point& ReferencePreview::at(double time, const ReferenceShape& reference,
                                                     const ListTimes& list_times) {
   const auto is_at = [&](std::size_t point) {
-    return point < points_.size() && points_[point].time == time && reference_ == &reference;
+    return point < points_.size() && points_[point].time == time &&
+           reference_ == reference.serial();
   };
   if (!is_at(present_)) ++present_;
   if (!is_at(present_)) look_ahead(reference, list_times);
@@ -30,7 +31,7 @@ const ReferencePreview::Point& ReferencePreview::at(double time, const Reference
 }
 
 void ReferencePreview::look_ahead(const ReferenceShape& reference, const ListTimes& list_times) {
-  reference_ = nullptr;
+  reference_ = 0;
   present_ = 0;
   const std::size_t count = table_ ? widest_lanes : 1;
   double times[widest_lanes];
@@ -46,7 +47,7 @@ void ReferencePreview::look_ahead(const ReferenceShape& reference, const ListTim
     points_[i].flat = table_ && table_->is_defined(i) ? table_.get() : nullptr;
     points_[i].column = i;
   }
-  reference_ = &reference;
+  reference_ = reference.serial();
 }
 
 }  // namespace quadcore::control

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,16 @@
 #include "references/shapes.hpp"
 
 namespace quadcore::control {
+namespace {
+
+std::uint64_t next_serial() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+}  // namespace
+
+ReferenceShape::ReferenceShape() : serial_(next_serial()) {}
 
 const std::vector<ReferenceInfo>& references() {
   static const std::vector<ReferenceInfo> all = {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -18,12 +19,19 @@ using messages::Reference;
 /// A reference as a pure function of time.
 class ReferenceShape {
  public:
+  ReferenceShape();
   virtual ~ReferenceShape() = default;
+  /// Return a positive number that only this reference and its copies have. Its address may later
+  /// be that of another reference.
+  std::uint64_t serial() const { return serial_; }
   /// Return the reference with all derivatives; at jumps, those from the right. \param t  since the
   /// start [s]
   virtual Reference at(double t) const = 0;
   /// Return the time from which the reference is at rest [s].
   virtual double end() const { return std::numeric_limits<double>::infinity(); }
+
+ private:
+  std::uint64_t serial_;
 };
 
 /// Rows of time [s] and position [m], or of time, position and yaw [rad].

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -44,8 +45,8 @@ class ReferencePreview {
  private:
   void look_ahead(const ReferenceShape& reference, const ListTimes& list_times);
 
-  std::unique_ptr<FlatTable> table_;           ///< null if the controller uses no flat state
-  const ReferenceShape* reference_ = nullptr;  ///< of the points
+  std::unique_ptr<FlatTable> table_;  ///< null if the controller uses no flat state
+  std::uint64_t reference_ = 0;       ///< ReferenceShape::serial() of the points; 0: no points
   std::vector<Point> points_;
   std::size_t present_ = 0;  ///< point of the last call
 };
