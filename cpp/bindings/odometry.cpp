@@ -22,7 +22,7 @@ std::unique_ptr<BoundOdometry> create_odometry(const py::object& simulation,
       BoundOdometry{simulation, topics[index].stamp, topics.read<messages::Odometry>(index), {}});
 }
 
-/// A getter of a member as an array, which is made once.
+/// A getter of a member as a read-only array, which is made once.
 template <std::size_t place, class Read>
 auto array_of(const Read& read) {
   return [read](BoundOdometry& odometry) {
@@ -30,6 +30,7 @@ auto array_of(const Read& read) {
     if (!array) {
       const auto& numbers = read(odometry.message);
       array = py::array_t<double>(numbers.size(), numbers.data());
+      py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
     }
     return array;
   };

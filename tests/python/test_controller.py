@@ -9,6 +9,7 @@ import pytest
 from flights import BUSY, ENGINES, HOVER, MANOEUVRE, bits, hold_height, quadrotor
 
 import quadcore as qc
+from quadcore import _core
 
 
 class HeightController:
@@ -111,6 +112,15 @@ def test_a_controller_is_given_the_measured_odometry():
     log = simulation.run(0.1, controller=controller)
     assert len(said) == 50
     assert np.abs(said[-1].position - log.position[-3]).max() > 1e-3  # noise
+
+
+@pytest.mark.parametrize("name", ["position", "orientation", "linear_velocity", "angular_velocity"])
+def test_the_measured_odometry_cannot_be_changed(name):
+    """Built-in controllers and inner loops read the message, not these arrays."""
+    measured = getattr(_core.Odometry(quadrotor("eigen")), name)
+    with pytest.raises(ValueError, match="read-only"):
+        measured[0] += 1
+    measured.copy()[0] += 1
 
 
 def test_constant_speeds_by_controller_and_by_table_are_one_flight():
