@@ -170,7 +170,11 @@ InputError
           "names", [](const BoundFleet& bound) { return bound.fleet.names(); },
           "Name of each vehicle, list of str.")
       .def_property_readonly(
-          "warnings", [](const BoundFleet& bound) { return bound.fleet.warnings(); },
+          "warnings",
+          [](const BoundFleet& bound) {
+            const FleetLock lock(bound);
+            return bound.fleet.warnings();
+          },
           "Warnings about the vehicles together, list of str.")
       .def_property_readonly(
           "free_bodies",

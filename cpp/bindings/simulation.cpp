@@ -190,9 +190,8 @@ Snapshot
       .def_property_readonly(
           "model", locked([](const Simulation& s) { return s.model(); }),
           "Model as the engine simulates it, including bodies that are attached now.")
-      .def_property_readonly(
-          "warnings", [](const Self& self) { return self->warnings(); },
-          "Warnings about the model and this flight, list of str.")
+      .def_property_readonly("warnings", locked([](const Simulation& s) { return s.warnings(); }),
+                             "Warnings about the model and this flight, list of str.")
       .def_property_readonly(
           "ignored", [](const Self& self) { return self->ignored(); },
           "Elements of model and world that the user ignored, and what of the world is not "

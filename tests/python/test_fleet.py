@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
 
 import numpy as np
@@ -132,3 +133,15 @@ def test_names_of_arguments_are_those_of_vehicles():
         fleet.run(1.0, controller={"c": "geometric"})
     with pytest.raises(qc.InputError, match="one object for several vehicles"):
         fleet.run(1.0, controller=Fall())
+
+
+def test_warnings_cannot_be_read_while_another_thread_writes_them():
+    fleet = quiet_fleet(make_vehicle(3), make_vehicle(6))
+    flying = threading.Thread(target=fleet._advance, args=(50000, []))
+    flying.start()
+    while fleet.time == 0:
+        pass
+    with pytest.raises(qc.InputError, match="is in use by another thread"):
+        _ = fleet.warnings
+    flying.join()
+    assert fleet.warnings == []

@@ -280,14 +280,19 @@ def test_an_interrupt_is_heard_soon_however_slow_a_step(rotors, call, hangar, al
     simulation.step(1)
 
 
-def test_log_state_and_topics_cannot_be_read_while_another_thread_writes_them():
+def test_log_state_topics_and_warnings_cannot_be_read_while_another_thread_writes_them():
     simulation = quadrotor("eigen")
     flight = _core.Flight(simulation, None, 1)
     flying = threading.Thread(target=flight.advance, args=(200000,))
     flying.start()
     while simulation.time == 0:
         pass
-    for read in (flight.take, simulation.state.copy, lambda: simulation.topic("odom")):
+    for read in (
+        flight.take,
+        simulation.state.copy,
+        lambda: simulation.topic("odom"),
+        lambda: simulation.warnings,
+    ):
         with pytest.raises(qc.InputError, match="is in use by another thread"):
             read()
     flying.join()
