@@ -18,6 +18,7 @@ void Batch::follow_together(const CommandAll& command_all, double rate, double d
 std::size_t Batch::size() const { return implementation_->size(); }
 std::size_t Batch::command_width() const { return implementation_->command_width(); }
 std::size_t Batch::state_width() const { return implementation_->state_width(); }
+std::size_t Batch::log_width() const { return implementation_->log_width(); }
 double Batch::dt() const { return implementation_->dt(); }
 void Batch::follow(const std::vector<BatchGuide>& guides, const std::string& odometry,
                    std::int64_t steps, std::int64_t log_every, std::vector<BatchGuided>& guided,

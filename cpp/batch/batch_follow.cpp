@@ -212,18 +212,17 @@ messages::Odometry Batch::Implementation::measure(std::size_t i, const std::stri
 void Batch::Implementation::note_rates(const std::vector<double>& states,
                                        std::vector<TotalVariation>& rates) const {
   for (std::size_t i = 0; i < size(); ++i) {
-    if (failures_[i].empty()) rates[i].add(&states[i * state_width() + 13]);
+    if (failures_[i].empty()) rates[i].add(&states[i * state_width() + batch::StateRow::joints]);
   }
 }
 
 void Batch::Implementation::log_all(std::vector<BatchGuided>& guided,
                                     const std::vector<double>& states) const {
-  const std::size_t columns = batch::StateRow::joints + common_.rotors();
   for (std::size_t i = 0; i < size(); ++i) {
     if (!guided[i].log || !failures_[i].empty()) continue;
-    double* row = guided[i].log + static_cast<std::size_t>(guided[i].rows) * (1 + columns);
+    double* row = guided[i].log + static_cast<std::size_t>(guided[i].rows) * log_width();
     *row = time(i);
-    std::copy_n(&states[i * state_width()], columns, row + 1);
+    std::copy_n(&states[i * state_width()], log_width() - 1, row + 1);
     ++guided[i].rows;
   }
 }

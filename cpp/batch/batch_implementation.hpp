@@ -44,6 +44,7 @@ class Batch::Implementation {
   std::size_t size() const { return members_.size(); }
   std::size_t command_width() const { return common_.command_width(); }
   std::size_t state_width() const { return lanes_->shown_rows(); }
+  std::size_t log_width() const { return batch::log_width(common_.rotors()); }
   double dt() const { return common_.dt(); }
   double time(std::size_t i) const { return static_cast<double>(steps_.at(i)) * dt(); }
   const std::vector<std::string>& failures() const { return failures_; }

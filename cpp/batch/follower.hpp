@@ -33,6 +33,9 @@ struct Follower {
   std::size_t lane() const { return vehicle % widest_lanes; }
 };
 
+/// Return the number of values in a row of a log: the time, and a state without its joint angles.
+inline std::size_t log_width(std::size_t rotors) { return 1 + StateRow::joints + rotors; }
+
 /// Return the sum of each number of a column of laws::VariationRow.
 std::vector<double> list_sums(const LaneNumbers& variation, std::size_t lane);
 

@@ -192,7 +192,7 @@ void GuidedBlock::command(Control& control, double step, double period, double* 
 void GuidedBlock::log(const Follower& follower, double step) const {
   double* row = follower.guided->log;
   if (!row) return;
-  row += static_cast<std::size_t>(follower.guided->rows) * (1 + StateRow::joints + lanes_.rotors());
+  row += static_cast<std::size_t>(follower.guided->rows) * log_width(lanes_.rotors());
   *row++ = step * dt_;
   for (std::size_t i = 0; i < StateRow::joints; ++i) *row++ = shown(i, follower);
   for (std::size_t i = 0; i < lanes_.rotors(); ++i) {

@@ -39,8 +39,8 @@ VehicleState taken(const double* row, Eigen::Index rotors) {
   state.orientation.coeffs() = Eigen::Map<const Eigen::Vector4d>(row + 3);
   state.linear_velocity = Eigen::Map<const Vector3d>(row + 7);
   state.angular_velocity = Eigen::Map<const Vector3d>(row + 10);
-  state.rotor_velocity = Eigen::Map<const VectorXd>(row + 13, rotors);
-  state.rotor_angle = Eigen::Map<const VectorXd>(row + 13 + rotors, rotors);
+  state.rotor_velocity = Eigen::Map<const VectorXd>(row + StateRow::joints, rotors);
+  state.rotor_angle = Eigen::Map<const VectorXd>(row + StateRow::joints + rotors, rotors);
   return state;
 }
 

@@ -148,7 +148,7 @@ py::tuple follow(GuardedBatch& self, const std::vector<BoundController*>& contro
     if (!controllers[i] || !references[i]) throw InputError("a controller or reference is None.");
   }
   const py::ssize_t rows = count_rows(steps, log_every);
-  const auto columns = static_cast<py::ssize_t>(1 + (13 + self.batch.state_width()) / 2);
+  const auto columns = static_cast<py::ssize_t>(self.batch.log_width());
   py::array_t<double> logs({static_cast<py::ssize_t>(logged.size()), rows, columns});
   std::vector<BatchGuide> guides;
   std::vector<BatchGuided> guided(n);
@@ -187,7 +187,7 @@ py::tuple follow_together(GuardedBatch& self, const py::function& function, doub
                           std::int64_t log_every) {
   const auto n = static_cast<py::ssize_t>(self.batch.size());
   const py::ssize_t rows = count_rows(steps, log_every);
-  const auto columns = static_cast<py::ssize_t>(1 + (13 + self.batch.state_width()) / 2);
+  const auto columns = static_cast<py::ssize_t>(self.batch.log_width());
   py::array_t<double> logs({n, rows, columns});
   std::vector<BatchGuided> guided(self.batch.size());
   for (py::ssize_t i = 0; i < n; ++i) {
@@ -292,6 +292,9 @@ InputError
       .def_property_readonly(
           "state_width", [](const GuardedBatch& self) { return self.batch.state_width(); },
           "Number of values in a vehicle's state, 13 + 2 rotors.")
+      .def_property_readonly(
+          "log_width", [](const GuardedBatch& self) { return self.batch.log_width(); },
+          "Number of values in a row of a log: the time, and the state without joint angles.")
       .def_property_readonly(
           "time",
           [](GuardedBatch& self) {

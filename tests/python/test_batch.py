@@ -7,7 +7,7 @@ import pytest
 import vehicles as v
 
 import quadcore as qc
-from quadcore import BatchSimulation, InputError, Simulation
+from quadcore import BatchSimulation, InputError, Simulation, _core
 
 N = 21  # two blocks, and a part of a third
 ROWS = np.arange(N)
@@ -415,3 +415,11 @@ def test_a_command_that_a_failed_vehicle_is_given_holds_when_it_flies_again():
     alone.command(hover)
     alone.step(100)
     assert batch.state.rotor_velocity[0] == pytest.approx(alone.state.rotor_velocity, rel=0.2)
+
+
+@pytest.mark.parametrize("model", ["quadrotor", "firefly"])
+def test_rows_of_logs_are_as_wide_as_those_of_single_flights(model):
+    batch = BatchSimulation(model, 1)
+    log = Simulation(model, engine="eigen").run(0.01)
+    assert batch.log_width == log.table.shape[1] == len(_core.log_columns(batch.command_width))
+    assert batch.state_width == batch.log_width - 1 + batch.command_width

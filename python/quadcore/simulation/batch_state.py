@@ -45,6 +45,7 @@ class BatchState(NamedTuple):
         rows : ndarray (n, 13 + 2 rotors)
             Rows as `BatchSimulation.read_state` returns them.
         """
-        rotors = (rows.shape[1] - 13) // 2
-        ends = np.cumsum([3, 4, 3, 3, rotors])
+        of_frame = [3, 4, 3, 3]
+        rotors = (rows.shape[1] - sum(of_frame)) // 2
+        ends = np.cumsum([*of_frame, rotors])
         return cls(*np.split(rows, ends, axis=1))

@@ -113,6 +113,9 @@ class Batch {
 
   /// Return the number of values in a row of get_state().
   std::size_t state_width() const;
+  /// Return the number of values in a row of a log: the time, and a row of get_state() without the
+  /// joint angles at its end.
+  std::size_t log_width() const;
   /// Write a row for each vehicle: p_WF [m], the quaternion of F in W (x, y, z, w), v_WF_W [m/s],
   /// w_WF_F [rad/s], all joint rates [rad/s], and all joint angles [rad].
   void get_state(double* rows) const;

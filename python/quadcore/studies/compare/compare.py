@@ -11,6 +11,7 @@ from typing import (
     Union,
 )
 
+from ... import _core
 from ..._core import FlightError, InputError, QuadcoreError
 from ...control.controller import ControllerLike
 from ...control.keywords import ReferenceName
@@ -180,7 +181,7 @@ def _keep(row: int, found: Measured, log: Log, keep: Optional[Keep]) -> Outcome:
 def _check_memory(plan: Plan) -> None:
     """Raise `InputError` if the logs would need too much memory."""
     rows = plan.options.duration / plan.dt / plan.steps_per_row(plan.dt)
-    size = len(plan) * rows * (14 + plan.rotor_count) * 8
+    size = len(plan) * rows * len(_core.log_columns(plan.rotor_count)) * 8
     if size > _LARGEST_LOGS:
         raise InputError(
             f"the logs of {len(plan)} flights need {size / 2**30:.0f} GiB. Give logs=False or a "

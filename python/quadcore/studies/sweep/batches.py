@@ -103,8 +103,7 @@ def _fly(flights: Sequence[Flight]) -> List[Row]:
     )
     steps = count_steps(first.duration, batch.dt)
     logged = range(0, steps + 1, first.log_every)
-    rotors = (batch.state_width - 13) // 2
-    tables = np.empty((len(plans), len(logged), 14 + rotors))
+    tables = np.empty((len(plans), len(logged), batch.log_width))
     state = np.empty((len(plans), batch.state_width))
     # First step of each row of the commands.
     begins = np.ceil((first.commands[:, 0] - _SLIP) / batch.dt).astype(int)
@@ -117,7 +116,7 @@ def _fly(flights: Sequence[Flight]) -> List[Row]:
         if stop % first.log_every == 0:
             batch._write_state(state)
             tables[:, row, 0] = stop * batch.dt
-            tables[:, row, 1:] = state[:, : 13 + rotors]
+            tables[:, row, 1:] = state[:, : batch.log_width - 1]
             row += 1
         now = int(np.searchsorted(begins, stop, "right")) - 1
         if now >= 0 and (begins[now] == stop or stop == 0):
