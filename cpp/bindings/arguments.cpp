@@ -20,6 +20,7 @@ bool is_masked(const py::object& object) {
   return py::isinstance(object, py::module_::import("numpy.ma").attr("MaskedArray"));
 }
 
+/// Format a shape like Python, "(2, 13)".
 std::string written(const Shape& shape) {
   std::string text;
   for (const py::ssize_t size : shape) text += (text.empty() ? "" : ", ") + std::to_string(size);

@@ -20,7 +20,7 @@ namespace py = pybind11;
 /// Numbers for C++: a contiguous, aligned array of doubles in row-major order.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast |
                                         static_cast<int>(py::detail::npy_api::NPY_ARRAY_ALIGNED_)>;
-/// Format a shape like Python, "(2, 13)".
+/// Numbers of elements along the dimensions of an array.
 using Shape = std::vector<py::ssize_t>;
 
 /// Return real numbers from any object that numpy converts to an array of so many dimensions.

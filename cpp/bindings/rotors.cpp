@@ -96,8 +96,8 @@ Speeds are those of a command, rad/s, before the division by `slowdown`.)")
       R"(Description of each rotor, in the order of `rotor_names`, tuple of Rotor.
 
 Thrust and torque are measured on the force laws of all plugins, at rest in still air, as the tags
-have them: losses during a flight are excluded. Each access repeats the measurement, which
-takes some milliseconds.)");
+have them: losses during a flight are excluded. The first access, and that after a change of the
+attached bodies, takes some milliseconds.)");
 }
 
 }  // namespace quadcore::bindings

@@ -12,7 +12,7 @@ namespace quadcore::bindings {
 namespace {
 
 /// Version of the pickle format of snapshots, which may differ in another quadcore.
-constexpr int snapshot_version = 1;  ///< of pickled snapshots
+constexpr int snapshot_version = 1;
 
 using Row = py::array_t<double, py::array::c_style | py::array::forcecast>;
 

@@ -30,7 +30,7 @@ Eigen::Vector4d orthogonal(const Eigen::Matrix<double, 4, 3>& vectors) {
   return normal;
 }
 
-/// Return numbers for each rotor, multiplied by the remaining fractions.
+/// Return the sum of the numbers of all rotors, each multiplied by its remaining fraction.
 double left_of(const VectorXd& numbers, const double* lost) {
   double sum = 0;
   for (Eigen::Index i = 0; i < numbers.size(); ++i) sum += (1 - lost[i]) * numbers[i];

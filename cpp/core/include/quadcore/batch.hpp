@@ -76,8 +76,7 @@ class Batch {
 
   /// Advance all vehicles that have not failed by so many steps.
   /// \param commands  rotor speeds [rad/s], a row of command_width() for each vehicle; null: the
-  /// previous
-  ///                  commands, or those of plugins
+  ///                  previous commands, or those of plugins
   /// Throws InputError without changes for a number that is not finite, or for commands if a plugin
   /// gives them.
   void step(const double* commands, std::int64_t count = 1);

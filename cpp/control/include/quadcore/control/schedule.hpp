@@ -30,8 +30,7 @@ class Schedule {
   /// \param step  number of the step, counted from 0; steps may be skipped
   /// \param dt    time step [s]
   /// \param ask   called as ask(period, speeds) when due, with the seconds since the last call and
-  /// until
-  ///              the next
+  ///              until the next
   /// Returns the speeds of the command that takes effect, (rotors,), or null.
   template <class Ask>
   const double* update(double step, double dt, double* state, const Ask& ask) const {
