@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "built.hpp"
 #include "older_pybind11.hpp"
@@ -25,6 +26,8 @@ struct Guarded {
   std::atomic<bool> busy{false};
   bool in_fleet = false;                  ///< whether only a fleet advances it
   std::optional<unsigned long> flown_by;  ///< thread of the present run; protected by the GIL
+  /// Python exception, such as KeyboardInterrupt, that ended a motion without a failure of it.
+  std::exception_ptr interrupt;
 
   Guarded(const Model& model, const World& world, const SimulationOptions& options)
       : simulation(model, world, options) {}
@@ -84,9 +87,10 @@ void without_gil(const Function& function) {
 }
 
 /// Issue the simulation's warnings of a call as Python warnings and update the state, which arrays
-/// in Python view, even if the call fails.
+/// in Python view, even if the call fails. If an interrupt ended the call, raise it instead of the
+/// failure.
 template <class Call>
-void raising_warnings(const Guarded& guarded, const Call& call) {
+void raising_warnings(Guarded& guarded, const Call& call) {
   const Simulation& simulation = guarded.simulation;
   const std::size_t before = simulation.warnings().size();
   const auto finish = [&] {
@@ -99,7 +103,9 @@ void raising_warnings(const Guarded& guarded, const Call& call) {
   try {
     call();
   } catch (...) {
+    const std::exception_ptr interrupt = std::exchange(guarded.interrupt, nullptr);
     finish();
+    if (interrupt) std::rethrow_exception(interrupt);
     throw;
   }
   finish();

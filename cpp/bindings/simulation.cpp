@@ -71,24 +71,30 @@ auto locked(const Get& get) {
 }
 
 /// Let Python move the vehicle: motion(dt, command, members) returns the state at the end of a
-/// step.
+/// step. An exception that is no Exception, such as KeyboardInterrupt, ends the call that advances
+/// the simulation, which then raises it.
 void move_by(const Self& self, const py::function& motion) {
   const Lock lock(*self, "_move_by()");
-  self->move_by([motion](double dt, const VectorXd& command, VehicleState& state) {
-    const py::gil_scoped_acquire gil;
-    try {
-      VehicleState moved = to_state(motion(dt, command, copies(state)));
-      if (moved.rotor_velocity.size() != state.rotor_velocity.size() ||
-          moved.rotor_angle.size() != state.rotor_angle.size()) {
-        throw Error(
-            "the motion returned a state with another number of rotors. Return values for each "
-            "rotor.");
-      }
-      state = std::move(moved);
-    } catch (const py::error_already_set& error) {
-      throw Error(py::cast<std::string>(py::str(error.value())));
-    }
-  });
+  self->move_by(
+      [motion, &guarded = *self](double dt, const VectorXd& command, VehicleState& state) {
+        const py::gil_scoped_acquire gil;
+        try {
+          VehicleState moved = to_state(motion(dt, command, copies(state)));
+          if (moved.rotor_velocity.size() != state.rotor_velocity.size() ||
+              moved.rotor_angle.size() != state.rotor_angle.size()) {
+            throw Error(
+                "the motion returned a state with another number of rotors. Return values for each "
+                "rotor.");
+          }
+          state = std::move(moved);
+        } catch (const py::error_already_set& error) {
+          if (!error.matches(PyExc_Exception)) {
+            guarded.interrupt = std::current_exception();
+            throw Error("the motion was interrupted");
+          }
+          throw Error(py::cast<std::string>(py::str(error.value())));
+        }
+      });
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ import quadcore as qc
 from quadcore.cli import main
 from quadcore.control import controllers, references
 from quadcore.simulation.simulation import make_simulation
+from quadcore.simulation.state import make_state
 from quadcore.thesis.chapter2 import GYROSTAT, Terms
 from quadcore.thesis.chapter2.plant import Plant, check
 
@@ -162,3 +163,41 @@ def test_the_command_line_flies_it(capsys, in_empty_folder):
     arguments = ["--controller", "geometric:rate=250", "--reference", "spiral", "--duration", "0.2"]
     assert main([*command, *arguments, "--log", "log.mat"]) == 0
     assert re.search(r"engine +lagrange", capsys.readouterr().out)
+
+
+@pytest.mark.parametrize(
+    "fly",
+    [
+        lambda plant: plant.step(1000),
+        lambda plant: [plant.step() for _ in range(1000)],
+        lambda plant: plant.run(1.0),
+        lambda plant: plant.run(1.0, controller=lambda t, state, reference: plant.hover_speed),
+    ],
+)
+def test_an_interrupt_of_a_motion_is_raised_as_it_is(fly):
+    """It is no failure of the model, which an exception of another kind is."""
+    raised = [KeyboardInterrupt(), ValueError("no solution")]
+
+    def motion(dt, command, members):
+        if members["time"] > 0.0105:
+            raise raised[0]
+        return make_state(members)
+
+    plant = qc.Simulation("quadrotor", "eigen")
+    plant._move_by(motion)
+    with pytest.raises(KeyboardInterrupt) as interrupted:
+        fly(plant)
+    assert interrupted.value is raised.pop(0)
+    with pytest.raises(qc.FlightError, match=r"t = 0.011.* s: the motion was interrupted\. To"):
+        plant.step()
+    plant.reset()
+    with pytest.raises(qc.FlightError, match="no solution"):
+        fly(plant)
+
+
+def test_an_interrupt_of_the_plant_keeps_the_log(alarm):
+    plant = Plant(xacro_args={"sim_slow": 1})
+    alarm(0.3)
+    with pytest.raises(KeyboardInterrupt) as interrupted:
+        plant.run(1e6, controller="pid", reference="hover")
+    assert len(interrupted.value.log) > 1

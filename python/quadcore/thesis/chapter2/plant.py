@@ -10,7 +10,6 @@ import numpy as np
 from ..._core import InputError
 from ...simulation.simulation import Simulation
 from ...simulation.state import State, make_state
-from ...support import interrupts
 from .. import LAGRANGE
 from .model import THESIS, MathematicalModel, Terms
 from .vehicle import Vehicle, find_air_plugin, list_command_order
@@ -67,17 +66,16 @@ class _Motion:
         self._fastest = model.vehicle.fastest
 
     def __call__(self, dt: float, command: np.ndarray, members: Mapping[str, Any]) -> State:
-        with interrupts.hold_signals():  # the engine would take one for a fault of the model
-            state = make_state(members)
-            joints = state.rotor_velocity.copy()
-            state.rotor_velocity = joints[self._order]
-            speeds = np.clip(command, -self._fastest, self._fastest)
-            after = self._model.step(dt, speeds, state)
-            joints[self._order] = after.rotor_velocity
-            turned = state.rotor_angle + dt * joints
-            after.rotor_velocity = joints
-            after.rotor_angle = np.remainder(turned + np.pi, 2 * np.pi) - np.pi
-            return after
+        state = make_state(members)
+        joints = state.rotor_velocity.copy()
+        state.rotor_velocity = joints[self._order]
+        speeds = np.clip(command, -self._fastest, self._fastest)
+        after = self._model.step(dt, speeds, state)
+        joints[self._order] = after.rotor_velocity
+        turned = state.rotor_angle + dt * joints
+        after.rotor_velocity = joints
+        after.rotor_angle = np.remainder(turned + np.pi, 2 * np.pi) - np.pi
+        return after
 
 
 def check(simulation: Simulation) -> None:
