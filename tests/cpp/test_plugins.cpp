@@ -23,10 +23,14 @@ struct LeaksAllowed {
   }
 };
 
-Simulation simulation(const std::string& plugin, const std::string& tags = "",
-                      const std::string& engine = "gazebo11", bool ground = false) {
+void find_test_plugins() {
   static const bool added = [] { return load_plugin_path(TEST_PLUGINS), true; }();
   REQUIRE(added);
+}
+
+Simulation simulation(const std::string& plugin, const std::string& tags = "",
+                      const std::string& engine = "gazebo11", bool ground = false) {
+  find_test_plugins();
   const Model m =
       model(link("frame", 1, round_body) + link("rotor", 0.01, round_rotor) +
             joint("turn", "continuous", "frame", "rotor") + "<gazebo><plugin name=\"it\" " +
@@ -129,6 +133,23 @@ TEST_CASE("a torque beyond all bounds ends the flight, and the simulation can be
     for (const EngineInfo& info : engines()) fly(hook, info.name, false);
     fly(hook, "gazebo11", true);
     fly(hook, "ode", true);
+  }
+}
+
+TEST_CASE("a plugin without bounds is updated in each step beside one that states bounds") {
+  find_test_plugins();
+  const std::string plugins =
+      "<gazebo><plugin name=\"counts\" filename=\"libcounting_plugin.so\"/>"
+      "<plugin name=\"bounded\" filename=\"libbounded_plugin.so\"/></gazebo>\n";
+  const Model m = model(link("frame", 1, round_body) + link("rotor", 0.01, round_rotor) +
+                        joint("turn", "continuous", "frame", "rotor") + plugins);
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    SimulationOptions options;
+    options.engine = info.name;
+    Simulation flown(m, World{}, options);
+    flown.step(7);
+    CHECK(flown.snapshot().plugin_state[0] == 7);
   }
 }
 

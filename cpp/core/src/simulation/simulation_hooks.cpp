@@ -46,16 +46,21 @@ void Simulation::note_hooks() {
 }
 
 void Simulation::gather_laws() {
+  std::vector<const LoadedPlugin*> bounded;
   for (LoadedPlugin& p : plugins_) {
     if (!p.descriptor->create.hooks.laws) continue;
     active_ = &p;
     p.quiet = laws_.quiet.size();
     p.plugin->laws(std::as_const(*this).state_of(p), laws_);
+    if (laws_.quiet.size() == p.quiet + 1) bounded.push_back(&p);
   }
   active_ = nullptr;
   laws_.complete = !windy_ && with_.forces_without_laws.empty();
-  laws_.all_quiet =
-      laws_.complete && with_.carried.empty() && laws_.quiet.size() == with_.update.size();
+  const auto is_bounded = [&bounded](const LoadedPlugin* p) {
+    return std::find(bounded.begin(), bounded.end(), p) != bounded.end();
+  };
+  laws_.all_quiet = laws_.complete && with_.carried.empty() &&
+                    std::all_of(with_.update.begin(), with_.update.end(), is_bounded);
 }
 
 void Simulation::show_instant() {
