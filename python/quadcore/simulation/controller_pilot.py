@@ -55,7 +55,7 @@ class ControllerPilot(ReferencePilot):
     ) -> None:
         if isinstance(controller, str):
             controller = controllers.parse(controller, simulation.model.name)
-        else:
+        elif not isinstance(controller, BuiltInController):
             check_callable(controller)
         super().__init__(simulation, reference)
         self.is_vectorized = is_vectorized(controller)
