@@ -55,9 +55,10 @@ class GazeboStep {
   bool caps_hinges(double dt);
 
   /// Return the fraction of an error of the hinges' multipliers that remains after the sweeps in
-  /// the present poses, at least 1e-16. It is measured by the energy of the accelerations of random
-  /// errors from a seed. The warm start is discarded.
-  double remaining_error(double dt, std::uint64_t seed);
+  /// the present poses, or a fraction of at most `enough` that remains after fewer sweeps. It is
+  /// measured by the energy of the accelerations of random errors from a seed. The warm start is
+  /// discarded.
+  double remaining_error(double dt, std::uint64_t seed, double enough);
 
   std::vector<WarmStart> warm_start;
   std::vector<char> asleep;  ///< whether each body sleeps; it does not move until another wakes it

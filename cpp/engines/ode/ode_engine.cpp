@@ -149,7 +149,7 @@ double OdeEngine::remaining_error(double dt) {
     state.rotor_velocity = state.rotor_angle = VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) state.rotor_angle[i] = random_normal(seed, count);
     set_state(state);
-    largest = std::max(largest, gazebo_step_->remaining_error(dt, seed));
+    largest = std::max(largest, gazebo_step_->remaining_error(dt, seed, converged));
   }
   return largest;
 }
