@@ -1,6 +1,7 @@
 #include "air_force.hpp"
 #include "flat_states.hpp"
 #include "jet.hpp"
+#include "lanes/inverse_root.hpp"
 #include "lanes/table.hpp"
 
 namespace quadcore::control {
@@ -53,17 +54,23 @@ QUADCORE_LAW Jet<T> force(const FlatVehicle& vehicle, const Derivatives<T>& want
           chosen(with_linear.ddx, with_both.ddx)};
 }
 
+/// Return the rotation with z of F along the force and x of F perpendicular to it and to `across`.
+/// The rates follow from the derivatives' parts along the axes (Mellinger, Kumar, ICRA 2011, sec.
+/// III): f = |f| z has the derivatives |f|' z + |f| z' and |f|'' z + 2 |f|' z' + |f| z'', where z'
+/// = w x z and z'' = w' x z + w x (w x z). The same holds for x.
 template <class T>
 QUADCORE_LAW Turning<T> turning_along(const FlatVehicle& vehicle, const Derivatives<T>& wanted,
                                       const Jet<T>& across) {
-  const Jet<T> z = unit(force(vehicle, wanted));
-  const Jet<T> x = unit(cross(across, z));
-  const Jet<T> y = cross(z, x);
-  // R' = R [w x], hence w = (z . y', x . z', y . x').
-  return {{x.x.x, y.x.x, z.x.x, x.x.y, y.x.y, z.x.y, x.x.z, y.x.z, z.x.z},
-          {dot(z.x, y.dx), dot(x.x, z.dx), dot(y.x, x.dx)},
-          {dot(z.dx, y.dx) + dot(z.x, y.ddx), dot(x.dx, z.dx) + dot(x.x, z.ddx),
-           dot(y.dx, x.dx) + dot(y.x, x.ddx)}};
+  const Jet<T> f = force(vehicle, wanted), a = cross(across, f);
+  const T by_f = laws::inverse_root(dot(f.x, f.x)), by_a = laws::inverse_root(dot(a.x, a.x));
+  const Vec3<T> z = by_f * f.x, x = by_a * a.x, y = cross(z, x);
+  const Vec3<T> w{-(by_f * dot(y, f.dx)), by_f * dot(x, f.dx), by_a * dot(y, a.dx)};
+  const T twice_df = 2 * dot(z, f.dx), twice_da = 2 * dot(x, a.dx);
+  return {{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z},
+          w,
+          {w.y * w.z - by_f * (dot(y, f.ddx) + twice_df * w.x),
+           by_f * (dot(x, f.ddx) - twice_df * w.y) - w.z * w.x,
+           by_a * (dot(y, a.ddx) - twice_da * w.z) - w.x * w.y}};
 }
 
 /// Return the derivatives of the position of the centre of mass if the origin of F follows a
