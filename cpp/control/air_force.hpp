@@ -14,21 +14,20 @@ struct AirNumbers {
   N quadratic;      ///< AirResistance::quadratic
 };
 
-/// Return the aerodynamic force in W for a velocity of the centre of mass in F [N].
+/// Return the aerodynamic force in F for a velocity of the centre of mass in F [N].
 template <class N, class T>
-QUADCORE_LAW laws::Vec3<T> air_force_W(const AirNumbers<N>& air, const laws::Matrix3<T>& R_WF,
+QUADCORE_LAW laws::Vec3<T> air_force_F(const AirNumbers<N>& air, const laws::Matrix3<T>& R_WF,
                                        const laws::Vec3<T>& v_F) {
   const laws::Vec3<T> v_W = R_WF * v_F;
   const N *l = air.linear, *c = air.components;
   const auto row = [&](std::size_t i) QUADCORE_INLINED {
     return l[i] * v_F.x + (l[i + 3] * v_F.y + l[i + 6] * v_F.z);
   };
-  const laws::Vec3<T> f_F{row(0) + c[0] * laws::absolute(v_W.x) * v_W.x,
-                          row(1) + c[1] * laws::absolute(v_W.y) * v_W.y,
-                          row(2) + c[2] * laws::absolute(v_W.z) * v_W.z};
-  const laws::Vec3<T> exerted_W = R_WF * f_F, f_W{-exerted_W.x, -exerted_W.y, -exerted_W.z};
-  if (!laws::any(air.quadratic != 0.0)) return f_W;
-  return f_W - (air.quadratic * laws::square_root(dot(v_W, v_W))) * v_W;
+  const laws::Vec3<T> f_F{-row(0) - c[0] * laws::absolute(v_W.x) * v_W.x,
+                          -row(1) - c[1] * laws::absolute(v_W.y) * v_W.y,
+                          -row(2) - c[2] * laws::absolute(v_W.z) * v_W.z};
+  if (!laws::any(air.quadratic != 0.0)) return f_F;
+  return f_F - (air.quadratic * laws::square_root(dot(v_F, v_F))) * v_F;
 }
 
 }  // namespace quadcore::control

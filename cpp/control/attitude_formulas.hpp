@@ -40,7 +40,8 @@ QUADCORE_LAW Quaternion<double> quaternion_of_large_turn(const Matrix3<double>& 
 template <class T>
 QUADCORE_LAW Quaternion<T> quaternion_of(const Matrix3<T>& R) {
   const T trace = R.xx + (R.yy + R.zz);
-  const T root = laws::square_root(trace + 1), by = 0.5 / root;
+  const T square = trace + 1, root = laws::square_root(square);
+  const T by = root * (0.5 / square);  // need not wait for the root, as in inverse_root()
   Quaternion<T> q{(R.zy - R.yz) * by, (R.xz - R.zx) * by, (R.yx - R.xy) * by, 0.5 * root};
   if (__builtin_expect(!laws::any(trace <= 0), 1)) return q;
   if constexpr (laws::lanes_of<T> == 1) {
@@ -78,22 +79,22 @@ QUADCORE_LAW Vec3<T> angular_acceleration(const AttitudeNumbers<T>& gains,
 /// See AttitudeLoop::torque().
 template <class T>
 QUADCORE_LAW Vec3<T> attitude_torque(const VehicleNumbers<T>& vehicle, bool drag, bool gyroscopic,
-                                     const Quaternion<T>& q_WF, const Vec3<T>& v_WF_W,
+                                     const Matrix3<T>& R_WF, const Vec3<T>& v_WF_W,
                                      const Vec3<T>& w_WF_F, const Vec3<T>& h_F,
                                      const Vec3<T>& dw_WF_F) {
   const Vec3<T> none{T{}, T{}, T{}};
   const Vec3<T> tau_air_F =
-      drag ? air_torque_F(vehicle, inversely_rotated(q_WF, v_WF_W), w_WF_F) : none;
+      drag ? air_torque_F(vehicle, laws::inversely(R_WF, v_WF_W), w_WF_F) : none;
   return torque_for(vehicle.inertia_Ccm_F, dw_WF_F, w_WF_F, gyroscopic ? h_F : none, tau_air_F);
 }
 
 /// Return the orientation with z along the given nonzero direction and x in the vertical plane of a
-/// yaw.
-/// \param across_W  across_yaw()
+/// yaw, relative to the axes of the arguments.
+/// \param across  across_yaw()
 template <class T>
-QUADCORE_LAW Matrix3<T> attitude_of(const Vec3<T>& z_W, const Vec3<T>& across_W) {
-  const Vec3<T> z = normalised(z_W);
-  const Vec3<T> x = normalised(cross(across_W, z_W));  // need not wait for z
+QUADCORE_LAW Matrix3<T> attitude_of(const Vec3<T>& direction, const Vec3<T>& across) {
+  const Vec3<T> z = normalised(direction);
+  const Vec3<T> x = normalised(cross(across, direction));  // need not wait for z
   const Vec3<T> y = cross(z, x);
   return {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z};
 }

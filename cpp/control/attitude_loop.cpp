@@ -20,9 +20,9 @@ Vector3d AttitudeLoop::angular_acceleration(const Vector3d& w_error_F) const {
 Vector3d AttitudeLoop::torque(const Odometry& now, const Vector3d& h_F,
                               const Vector3d& dw_WF_F) const {
   const MeasuredNumbers<double> motion = numbers_of(now);
-  return vector_of(attitude_torque(numbers_of(model_), gains_.drag, gains_.gyroscopic, motion.q_WF,
-                                   motion.v_WF_W, motion.w_WF_F, numbers_of(h_F),
-                                   numbers_of(dw_WF_F)));
+  return vector_of(attitude_torque(numbers_of(model_), gains_.drag, gains_.gyroscopic,
+                                   laws::rotation(motion.q_WF), motion.v_WF_W, motion.w_WF_F,
+                                   numbers_of(h_F), numbers_of(dw_WF_F)));
 }
 
 }  // namespace quadcore::control

@@ -50,8 +50,8 @@ struct CascadeFormulas {
     Vec3<T> a_W = a_WF_W + Vec3<T>{T{}, T{}, vehicle.gravity};
     if (switches.flat_rates) a_W = a_W + input.wanted.a_FCcm_W;
     if (!switches.drag) return a_W;
-    const Vec3<T> f_W = air_force_W(
-        vehicle.air, R_WF, v_WCcm_F(vehicle, laws::inversely(R_WF, now.v_WF_W), now.w_WF_F));
+    const Vec3<T> v_F = v_WCcm_F(vehicle, laws::inversely(R_WF, now.v_WF_W), now.w_WF_F);
+    const Vec3<T> f_W = R_WF * air_force_F(vehicle.air, R_WF, v_F);
     return a_W - Vec3<T>{f_W.x / vehicle.mass, f_W.y / vehicle.mass, f_W.z / vehicle.mass};
   }
 
@@ -86,10 +86,11 @@ struct CascadeFormulas {
       return now.by_W(y({T{}, T{}, input.wanted.yaw_rate})) + now.by_dW(rates);
     }
     // W eta'' = w' - W' eta'.
-    const EulerAngles<T> flat(input.wanted.R_WF);
-    const Vec3<T> flat_rates = flat.by_inverse_W(input.wanted.w_WF_F);
+    const Matrix3<T>& R_WF = input.wanted.R_WF;
+    const EulerAngles<T> flat(R_WF);
+    const Vec3<T> flat_rates = flat.by_inverse_W(laws::inversely(R_WF, input.wanted.w_WF_W));
     const Vec3<T> flat_accelerations =
-        flat.by_inverse_W(input.wanted.dw_WF_F - flat.by_dW(flat_rates));
+        flat.by_inverse_W(laws::inversely(R_WF, input.wanted.dw_WF_W) - flat.by_dW(flat_rates));
     return now.by_W(y(flat_rates) + flat_accelerations) + now.by_dW(rates);
   }
 };
@@ -107,7 +108,7 @@ QUADCORE_LAW DemandNumbers<T> demand_by_cascade(const CascadeFormulas<T>& formul
       angles, formulas.wanted_rpy(lift_W, angles.rpy.z), memory.angles);
   // (2.48) or (2.55), and (2.49) or (2.57).
   return {vehicle.mass * dot(lift_W, Vec3<T>{R_WF.xz, R_WF.yz, R_WF.zz}),
-          attitude_torque(vehicle, formulas.switches.drag, formulas.switches.gyroscopic, now.q_WF,
+          attitude_torque(vehicle, formulas.switches.drag, formulas.switches.gyroscopic, R_WF,
                           now.v_WF_W, now.w_WF_F, formulas.input.rotors.h_F, dw_WF_F)};
 }
 

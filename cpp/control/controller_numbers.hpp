@@ -15,7 +15,8 @@ struct WantedNumbers {
   Vec3<T> position, velocity, acceleration;
   Vec3<T> across_W;  ///< across_yaw()
   Matrix3<T> R_WF;
-  Vec3<T> w_WF_F, dw_WF_F, a_FCcm_W;
+  Vec3<T> w_WF_W, dw_WF_W;  ///< in W, because control laws use them in the measured F
+  Vec3<T> a_FCcm_W;
   T thrust;
   T yaw, yaw_rate;
 };

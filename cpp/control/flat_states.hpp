@@ -24,7 +24,9 @@ struct FlatRow {
     R_WF,
     w_WF_F = R_WF + 9,
     dw_WF_F = w_WF_F + 3,
-    a_FCcm_W = dw_WF_F + 3,
+    w_WF_W = dw_WF_F + 3,
+    dw_WF_W = w_WF_W + 3,
+    a_FCcm_W = dw_WF_W + 3,
     thrust = a_FCcm_W + 3,
     count
   };

@@ -119,20 +119,22 @@ QUADCORE_LAW void solve(const FlatVehicle& vehicle, double* columns) {
     a_FCcm_W = of_centre_of_mass(wanted, r_F, turning).acceleration - wanted.acceleration;
   }
   const Vec3<T> up{T{}, T{}, laws::broadcast<T>(vehicle.gravity)};
-  Vec3<T> exerted_W = vehicle.mass * (wanted.acceleration + a_FCcm_W + up);
-  if (vehicle.with_drag) {
-    const Vec3<T> v_F = inversely(turning.R_WF, wanted.velocity) + cross(turning.w_WF_F, r_F);
-    exerted_W = exerted_W - air_force_W(vehicle.air, turning.R_WF, v_F);
-  }
   const Matrix3<T>& R = turning.R_WF;
+  T thrust = vehicle.mass * dot(Vec3<T>{R.xz, R.yz, R.zz}, wanted.acceleration + a_FCcm_W + up);
+  if (vehicle.with_drag) {
+    const Vec3<T> v_F = inversely(R, wanted.velocity) + cross(turning.w_WF_F, r_F);
+    thrust = thrust - air_force_F(vehicle.air, R, v_F).z;
+  }
   double* const rotation = columns + FlatRow::R_WF * widest_lanes;
   store_vector(rotation, Vec3<T>{R.xx, R.yx, R.zx});
   store_vector(rotation + 3 * widest_lanes, Vec3<T>{R.xy, R.yy, R.zy});
   store_vector(rotation + 6 * widest_lanes, Vec3<T>{R.xz, R.yz, R.zz});
   store_vector(columns + FlatRow::w_WF_F * widest_lanes, turning.w_WF_F);
   store_vector(columns + FlatRow::dw_WF_F * widest_lanes, turning.dw_WF_F);
+  store_vector(columns + FlatRow::w_WF_W * widest_lanes, R * turning.w_WF_F);
+  store_vector(columns + FlatRow::dw_WF_W * widest_lanes, R * turning.dw_WF_F);
   store_vector(columns + FlatRow::a_FCcm_W * widest_lanes, a_FCcm_W);
-  laws::store(columns + FlatRow::thrust * widest_lanes, dot(Vec3<T>{R.xz, R.yz, R.zz}, exerted_W));
+  laws::store(columns + FlatRow::thrust * widest_lanes, thrust);
 }
 
 }  // namespace

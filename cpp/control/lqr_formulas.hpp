@@ -44,9 +44,10 @@ QUADCORE_LAW DemandNumbers<T> demand_optimally(const ControllerSwitches& switche
   const Vec3<T> sum_D = laws::inversely(wanted.R_WF, memory.integral),
                 error_D = laws::inversely(wanted.R_WF, error_W),
                 slip_D = laws::inversely(wanted.R_WF, wanted.velocity - now.v_WF_W);
-  const Matrix3<T> R_FD = inversely(laws::rotation(now.q_WF), wanted.R_WF);
+  const Matrix3<T> R_WF = laws::rotation(now.q_WF), R_FD = inversely(R_WF, wanted.R_WF);
   const Vec3<T> turn_F = attitude_error(quaternion_of(R_FD));
-  const Vec3<T> wanted_w_F = (switches.flat_rates ? 1.0 : 0.0) * (R_FD * wanted.w_WF_F);
+  const Vec3<T> wanted_w_F =
+      (switches.flat_rates ? 1.0 : 0.0) * laws::inversely(R_WF, wanted.w_WF_W);
   const Vec3<T> slip_w_F = wanted_w_F - now.w_WF_F;
 
   const auto level = [&](T sum, T error, T slip, T tilt, T rate) QUADCORE_INLINED {
@@ -58,12 +59,12 @@ QUADCORE_LAW DemandNumbers<T> demand_optimally(const ControllerSwitches& switche
                level(sum_D.x, error_D.x, slip_D.x, turn_F.y, slip_w_F.y),
                gains.yaw[0] * turn_F.z + gains.yaw[1] * slip_w_F.z};
   if (switches.flat_rates) {
-    dw_F = dw_F + (R_FD * wanted.dw_WF_F - cross(now.w_WF_F, wanted_w_F));
+    dw_F = dw_F + (laws::inversely(R_WF, wanted.dw_WF_W) - cross(now.w_WF_F, wanted_w_F));
   }
   const T climb =
       gains.height[0] * sum_D.z + (gains.height[1] * error_D.z + gains.height[2] * slip_D.z);
   return {wanted.thrust + gains.vehicle.mass * climb,
-          attitude_torque(gains.vehicle, switches.drag, switches.gyroscopic, now.q_WF, now.v_WF_W,
+          attitude_torque(gains.vehicle, switches.drag, switches.gyroscopic, R_WF, now.v_WF_W,
                           now.w_WF_F, input.rotors.h_F, dw_F)};
 }
 

@@ -115,8 +115,7 @@ Vector3d ModelledVehicle::air_force_W(const Matrix3d& R_WF, const Vector3d& v_WF
   const VehicleNumbers<double> vehicle = numbers_of(*this);
   const Matrix3<double> R = numbers_of(R_WF);
   const Vec3<double> v_F = laws::inversely(R, numbers_of(v_WF_W));
-  return vector_of(
-      control::air_force_W(vehicle.air, R, v_WCcm_F(vehicle, v_F, numbers_of(w_WF_F))));
+  return vector_of(R * air_force_F(vehicle.air, R, v_WCcm_F(vehicle, v_F, numbers_of(w_WF_F))));
 }
 
 Vector3d ModelledVehicle::air_torque_F(const Vector3d& v_WF_F, const Vector3d& w_WF_F) const {

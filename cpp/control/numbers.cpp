@@ -50,8 +50,8 @@ WantedNumbers<double> numbers_of(const Reference& wanted, const FlatState* flat)
   }
   numbers.across_W = numbers_of(flat->across_W);
   numbers.R_WF = numbers_of(flat->R_WF);
-  numbers.w_WF_F = numbers_of(flat->w_WF_F);
-  numbers.dw_WF_F = numbers_of(flat->dw_WF_F);
+  numbers.w_WF_W = numbers.R_WF * numbers_of(flat->w_WF_F);
+  numbers.dw_WF_W = numbers.R_WF * numbers_of(flat->dw_WF_F);
   numbers.a_FCcm_W = numbers_of(flat->a_FCcm_W);
   numbers.thrust = flat->thrust;
   return numbers;

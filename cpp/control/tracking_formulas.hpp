@@ -24,6 +24,7 @@ struct TrackingFormulas {
   const ControllerSwitches& switches;
   const TrackingNumbers<T>& gains;
   const InputNumbers<T>& input;
+  Matrix3<T> R_WF = laws::rotation(input.now.q_WF);  ///< measured orientation
 
   /// Return the acceleration that corrects position and velocity errors, in W [m/s^2].
   /// \param integral  memory [m s]
@@ -42,47 +43,43 @@ struct TrackingFormulas {
     return a_W + by_components(gains.position_i, integral);
   }
 
-  /// Return the force of the rotors for an acceleration of the origin of F, in W [N].
-  QUADCORE_LAW Vec3<T> force_W(const Vec3<T>& a_WF_W) const {
+  /// Return the force of the rotors for an acceleration of the origin of F, in F [N].
+  QUADCORE_LAW Vec3<T> force_F(const Vec3<T>& a_WF_W) const {
     const VehicleNumbers<T>& vehicle = gains.vehicle;
-    Vec3<T> a_W = a_WF_W + Vec3<T>{T{}, T{}, vehicle.gravity};
-    if (switches.flat_rates) a_W = a_W + input.wanted.a_FCcm_W;
-    if (!switches.drag) return vehicle.mass * a_W;
+    Vec3<T> other_W{T{}, T{}, vehicle.gravity};
+    if (switches.flat_rates) other_W = other_W + input.wanted.a_FCcm_W;
+    const Vec3<T> f_F = vehicle.mass * laws::inversely(R_WF, a_WF_W + other_W);
+    if (!switches.drag) return f_F;
     const MeasuredNumbers<T>& now = input.now;
-    const Matrix3<T> R_WF = laws::rotation(now.q_WF);
-    return vehicle.mass * a_W -
-           air_force_W(vehicle.air, R_WF,
-                       v_WCcm_F(vehicle, laws::inversely(R_WF, now.v_WF_W), now.w_WF_F));
+    const Vec3<T> v_F = v_WCcm_F(vehicle, laws::inversely(R_WF, now.v_WF_W), now.w_WF_F);
+    return f_F - air_force_F(vehicle.air, R_WF, v_F);
   }
 
-  /// Return the angular acceleration that rotates z of F to a direction and x to the yaw, in F
+  /// Return the angular acceleration that rotates z of F to a direction in F and x to the yaw, in F
   /// [rad/s^2].
-  QUADCORE_LAW Vec3<T> angular_acceleration(const Vec3<T>& z_W) const {
-    const Matrix3<T> R_WF = laws::rotation(input.now.q_WF);
-    const Quaternion<T> q_FD =
-        quaternion_of(inversely(R_WF, attitude_of(z_W, input.wanted.across_W)));
+  QUADCORE_LAW Vec3<T> angular_acceleration(const Vec3<T>& direction_F) const {
+    const Vec3<T> across_F = laws::inversely(R_WF, input.wanted.across_W);
+    const Quaternion<T> q_FD = quaternion_of(attitude_of(direction_F, across_F));
     const Vec3<T>& w_WF_F = input.now.w_WF_F;
     if (!switches.flat_rates) {
       const Vec3<T> w_error_F{-w_WF_F.x, -w_WF_F.y, -w_WF_F.z};
       return control::angular_acceleration(gains.attitude, q_FD, w_error_F);
     }
-    const Matrix3<T> R_FD = inversely(R_WF, input.wanted.R_WF);
-    const Vec3<T> wanted_w_F = R_FD * input.wanted.w_WF_F;
-    const Vec3<T> wanted_dw_F = R_FD * input.wanted.dw_WF_F - cross(w_WF_F, wanted_w_F);
+    const Vec3<T> wanted_w_F = laws::inversely(R_WF, input.wanted.w_WF_W);
+    const Vec3<T> wanted_dw_F =
+        laws::inversely(R_WF, input.wanted.dw_WF_W) - cross(w_WF_F, wanted_w_F);
     return control::angular_acceleration(gains.attitude, q_FD, wanted_w_F - w_WF_F) + wanted_dw_F;
   }
 
   /// Return the torque of the rotors for an angular acceleration, in F [N m].
   QUADCORE_LAW Vec3<T> torque(const Vec3<T>& dw_WF_F) const {
     const MeasuredNumbers<T>& now = input.now;
-    return attitude_torque(gains.vehicle, switches.drag, switches.gyroscopic, now.q_WF, now.v_WF_W,
+    return attitude_torque(gains.vehicle, switches.drag, switches.gyroscopic, R_WF, now.v_WF_W,
                            now.w_WF_F, input.rotors.h_F, dw_WF_F);
   }
 
   /// Return z of F in W.
-  QUADCORE_LAW Vec3<T> z_W() const {
-    return rotated(input.now.q_WF, Vec3<T>{T{}, T{}, laws::broadcast<T>(1)});
-  }
+  QUADCORE_LAW Vec3<T> z_W() const { return {R_WF.xz, R_WF.yz, R_WF.zz}; }
 };
 
 /// Memory of the geometric control formulas.
@@ -95,8 +92,8 @@ struct GeometricMemory {
 template <class T>
 QUADCORE_LAW DemandNumbers<T> demand_geometrically(const TrackingFormulas<T>& formulas,
                                                    GeometricMemory<T>& memory) {
-  const Vec3<T> f_W = formulas.force_W(formulas.acceleration(memory.integral));
-  return {dot(f_W, formulas.z_W()), formulas.torque(formulas.angular_acceleration(f_W))};
+  const Vec3<T> f_F = formulas.force_F(formulas.acceleration(memory.integral));
+  return {f_F.z, formulas.torque(formulas.angular_acceleration(f_F))};
 }
 
 /// Memory of the incremental control law: the integral of the position error, then the filtered
@@ -132,9 +129,9 @@ QUADCORE_LAW DemandNumbers<T> demand_incrementally(const TrackingFormulas<T>& fo
   const Vec3<T> a_W = formulas.acceleration(memory.integral);
   // Start with modelled values, including the accelerations, before the first measurement.
   if (input.begins) {
-    const Vec3<T> f_W = formulas.force_W(a_W);
-    const Vec3<T> dw_F = formulas.angular_acceleration(f_W);
-    const DemandNumbers<T> demand{dot(f_W, z_W), formulas.torque(dw_F)};
+    const Vec3<T> f_F = formulas.force_F(a_W);
+    const Vec3<T> dw_F = formulas.angular_acceleration(f_F);
+    const DemandNumbers<T> demand{f_F.z, formulas.torque(dw_F)};
     const T behind = input.period * (1 / share - 1);  // lag of a filter on a ramp
     memory.velocity = input.now.v_WF_W - behind * a_W;
     memory.rate = input.now.w_WF_F - behind * dw_F;
@@ -152,10 +149,11 @@ QUADCORE_LAW DemandNumbers<T> demand_incrementally(const TrackingFormulas<T>& fo
 
   // Both accelerations refer to the origin of F; the force already includes the relative
   // acceleration of the centre of mass.
-  const Vec3<T> f_W = memory.force + vehicle.mass * (a_W - measured_a_W);
-  const Vec3<T> dw_F = formulas.angular_acceleration(f_W);
+  const Vec3<T> f_F =
+      laws::inversely(formulas.R_WF, memory.force + vehicle.mass * (a_W - measured_a_W));
+  const Vec3<T> dw_F = formulas.angular_acceleration(f_F);
   const Vec3<T> incremental_F = memory.torque + vehicle.inertia_Ccm_F * (dw_F - measured_dw_F);
-  return {dot(f_W, z_W), {incremental_F.x, incremental_F.y, formulas.torque(dw_F).z}};
+  return {f_F.z, {incremental_F.x, incremental_F.y, formulas.torque(dw_F).z}};
 }
 
 }  // namespace quadcore::control

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "air_force.hpp"
+#include "lanes/inverse_root.hpp"
 #include "lanes/quaternion.hpp"
 
 /// \file
@@ -48,20 +49,6 @@ QUADCORE_LAW Vec3<T> torque_for(const Matrix3<T>& inertia_Ccm_F, const Vec3<T>& 
   return (inertia_Ccm_F * dw_WF_F + cross(w_WF_F, inertia_Ccm_F * w_WF_F + h_F)) - tau_air_F;
 }
 
-/// Return a vector rotated by a unit quaternion.
-template <class T>
-QUADCORE_LAW Vec3<T> rotated(const Quaternion<T>& q, const Vec3<T>& a) {
-  const Vec3<T> u{q.x, q.y, q.z};
-  const Vec3<T> half = cross(u, a);
-  const Vec3<T> turned = half + half;
-  return a + q.w * turned + cross(u, turned);
-}
-/// Return a vector rotated by the inverse of a unit quaternion.
-template <class T>
-QUADCORE_LAW Vec3<T> inversely_rotated(const Quaternion<T>& q, const Vec3<T>& a) {
-  return rotated(Quaternion<T>{-q.x, -q.y, -q.z, q.w}, a);
-}
-
 /// Return the product of the transpose of a matrix and another matrix.
 template <class T>
 QUADCORE_LAW Matrix3<T> inversely(const Matrix3<T>& A, const Matrix3<T>& B) {
@@ -74,8 +61,8 @@ QUADCORE_LAW Matrix3<T> inversely(const Matrix3<T>& A, const Matrix3<T>& B) {
 /// Return a vector divided by its norm, or the null vector.
 template <class T>
 QUADCORE_LAW Vec3<T> normalised(const Vec3<T>& a) {
-  const T square = dot(a, a), inverse = 1.0 / laws::square_root(square);
-  const T factor = laws::chosen_by(square > 0, inverse, laws::broadcast<T>(1));
+  const T square = dot(a, a);
+  const T factor = laws::chosen_by(square > 0, laws::inverse_root(square), laws::broadcast<T>(1));
   return factor * a;
 }
 
