@@ -3,7 +3,6 @@
 #include "attitude_formulas.hpp"
 #include "controller_numbers.hpp"
 #include "euler_formulas.hpp"
-#include "lanes/turn.hpp"
 
 /// \file
 /// The cascaded control law as formulas for numbers or packs. Contains neither Eigen nor code, so
@@ -55,26 +54,25 @@ struct CascadeFormulas {
     return a_W - Vec3<T>{f_W.x / vehicle.mass, f_W.y / vehicle.mass, f_W.z / vehicle.mass};
   }
 
-  /// Return the roll, pitch and yaw of (2.46), (2.47) or (2.53), (2.54), with the measured yaw. The
-  /// four-quadrant arc tangent makes a demand beyond free fall turn the vehicle over instead of
-  /// reversing the demand.
-  QUADCORE_LAW Vec3<T> wanted_rpy(const Vec3<T>& lift_W, T yaw) const {
-    const laws::SineCosine<T> of_yaw = laws::sine_and_cosine(yaw);
-    const T size = laws::square_root(dot(lift_W, lift_W));
-    const T pitch = laws::arc_tangent(lift_W.x * of_yaw.cos + lift_W.y * of_yaw.sin, lift_W.z);
-    const T sine = (lift_W.x * of_yaw.sin - lift_W.y * of_yaw.cos) / size;
-    return {laws::nearest_arc_sine(laws::chosen_by(size > 0, sine, T{})), pitch, input.wanted.yaw};
+  /// Return how far roll, pitch and yaw are from those of (2.46), (2.47) or (2.53), (2.54), with
+  /// the measured yaw [rad]. The wanted pitch is that of the whole turn, which makes a demand
+  /// beyond free fall turn the vehicle over instead of reversing the demand.
+  QUADCORE_LAW Vec3<T> angle_errors(const EulerAngles<T>& now, const Vec3<T>& lift_W) const {
+    const T ahead = lift_W.x * now.yaw.cos + lift_W.y * now.yaw.sin,
+            right = lift_W.x * now.yaw.sin - lift_W.y * now.yaw.cos;
+    const T without_roll = laws::square_root(ahead * ahead + lift_W.z * lift_W.z);
+    const Vec3<T>& across_W = input.wanted.across_W;
+    return {angle_between(now.roll, {right, without_roll}),
+            angle_between(now.pitch, {ahead, lift_W.z}),
+            angle_between(now.yaw, {-across_W.x, across_W.y})};
   }
 
   /// Return the angular acceleration of (2.50), with integrals as in section 6.2, in F [rad/s^2].
   /// J(eta) y + C(eta, eta') eta' are generalised torques, W^T times those about the body axes.
   /// With J = W^T I W, the latter are I (W y + W' eta') + w x I w.
-  QUADCORE_LAW Vec3<T> angular_acceleration(const EulerAngles<T>& now, const Vec3<T>& wanted_rpy,
+  QUADCORE_LAW Vec3<T> angular_acceleration(const EulerAngles<T>& now, const Vec3<T>& error,
                                             Vec3<T>& integral) const {
     const Vec3<T> rates = now.by_inverse_W(input.now.w_WF_F);
-    const Vec3<T> away = wanted_rpy - now.rpy;
-    const Vec3<T> error{laws::within_half_turn(away.x), laws::within_half_turn(away.y),
-                        laws::within_half_turn(away.z)};
     integral = integral + input.period * error;
     const Vec3<T> of_errors =
         by_components(gains.angle_p, error) + by_components(gains.angle_i, integral);
@@ -104,8 +102,8 @@ QUADCORE_LAW DemandNumbers<T> demand_by_cascade(const CascadeFormulas<T>& formul
   const Matrix3<T> R_WF = laws::rotation(now.q_WF);
   const EulerAngles<T> angles(R_WF);
   const Vec3<T> lift_W = formulas.lift_W(R_WF, formulas.acceleration(memory.position));
-  const Vec3<T> dw_WF_F = formulas.angular_acceleration(
-      angles, formulas.wanted_rpy(lift_W, angles.rpy.z), memory.angles);
+  const Vec3<T> dw_WF_F =
+      formulas.angular_acceleration(angles, formulas.angle_errors(angles, lift_W), memory.angles);
   // (2.48) or (2.55), and (2.49) or (2.57).
   return {vehicle.mass * dot(lift_W, Vec3<T>{R_WF.xz, R_WF.yz, R_WF.zz}),
           attitude_torque(vehicle, formulas.switches.drag, formulas.switches.gyroscopic, R_WF,

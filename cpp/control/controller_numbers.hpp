@@ -18,7 +18,7 @@ struct WantedNumbers {
   Vec3<T> w_WF_W, dw_WF_W;  ///< in W, because control laws use them in the measured F
   Vec3<T> a_FCcm_W;
   T thrust;
-  T yaw, yaw_rate;
+  T yaw_rate;
 };
 
 /// A demand on the rotors.

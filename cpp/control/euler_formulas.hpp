@@ -9,17 +9,35 @@
 
 namespace quadcore::control {
 
+using laws::SineCosine;
+
+/// Return the sine and cosine of an angle for their products with a positive factor.
+template <class T>
+QUADCORE_LAW SineCosine<T> normalised(const SineCosine<T>& a) {
+  const T factor = laws::inverse_root(a.sin * a.sin + a.cos * a.cos);
+  return {factor * a.sin, factor * a.cos};
+}
+
+/// Return the angle in [-pi, pi] from one angle to another [rad]. Their sines and cosines may have
+/// positive factors.
+template <class T>
+QUADCORE_LAW T angle_between(const SineCosine<T>& from, const SineCosine<T>& to) {
+  return laws::arc_tangent(to.sin * from.cos - to.cos * from.sin,
+                           to.cos * from.cos + to.sin * from.sin);
+}
+
 /// Roll, pitch and yaw of a frame F, and the W of thesis eq. (2.9), which converts their rates to
 /// its angular velocity: w_WF_F = W d(rpy)/dt.
 template <class T>
 struct EulerAngles {
-  Vec3<T> rpy;  ///< rad
-  laws::SineCosine<T> roll, pitch;
+  SineCosine<T> roll, pitch, yaw;
 
   explicit QUADCORE_LAW EulerAngles(const Matrix3<T>& R_WF)
-      : rpy(laws::roll_pitch_yaw(R_WF)),
-        roll(laws::sine_and_cosine(rpy.x)),
-        pitch(laws::sine_and_cosine(rpy.y)) {}
+      : pitch{-R_WF.zx, laws::square_root(R_WF.zy * R_WF.zy + R_WF.zz * R_WF.zz)} {
+    const laws::RollAndYaw<T> others = laws::roll_and_yaw(R_WF);
+    roll = normalised(others.roll);
+    yaw = normalised(others.yaw);
+  }
 
   /// Return W times a vector.
   QUADCORE_LAW Vec3<T> by_W(const Vec3<T>& a) const {
@@ -28,9 +46,8 @@ struct EulerAngles {
   }
   /// Return the inverse of W times a vector; infinite or NaN at a pitch of 90 degrees.
   QUADCORE_LAW Vec3<T> by_inverse_W(const Vec3<T>& a) const {
-    const T across = roll.sin * a.y + roll.cos * a.z;
-    return {a.x + pitch.sin / pitch.cos * across, roll.cos * a.y - roll.sin * a.z,
-            across / pitch.cos};
+    const T of_yaw = (roll.sin * a.y + roll.cos * a.z) / pitch.cos;
+    return {a.x + pitch.sin * of_yaw, roll.cos * a.y - roll.sin * a.z, of_yaw};
   }
   /// Return the time derivative of W times the rates of roll, pitch and yaw.
   QUADCORE_LAW Vec3<T> by_dW(const Vec3<T>& rates) const {

@@ -81,7 +81,6 @@ WantedNumbers<double> FlatTable::numbers(const Reference& wanted, std::size_t co
           vector(FlatRow::dw_WF_W, column),
           vector(FlatRow::a_FCcm_W, column),
           number(FlatRow::thrust, column),
-          wanted.yaw,
           wanted.yaw_rate};
 }
 

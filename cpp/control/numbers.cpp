@@ -42,7 +42,6 @@ WantedNumbers<double> numbers_of(const Reference& wanted, const FlatState* flat)
   numbers.position = numbers_of(wanted.position);
   numbers.velocity = numbers_of(wanted.velocity);
   numbers.acceleration = numbers_of(wanted.acceleration);
-  numbers.yaw = wanted.yaw;
   numbers.yaw_rate = wanted.yaw_rate;
   if (!flat) {
     numbers.across_W = numbers_of(across_yaw(wanted.yaw));

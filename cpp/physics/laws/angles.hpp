@@ -28,14 +28,28 @@ QUADCORE_LAW T nearest_arc_sine(T sine) {
   return arc_sine(chosen_by(absolute(sine) > 1, with_sign_of(sine, broadcast<T>(1)), sine));
 }
 
-/// Return roll, pitch and yaw [rad] of a rotation, see rpy_from_quaternion().
+/// Sines and cosines of the roll and yaw of a rotation, times positive factors.
 template <class T>
-QUADCORE_LAW Vec3<T> roll_pitch_yaw(const Matrix3<T>& R) {
+struct RollAndYaw {
+  SineCosine<T> roll, yaw;
+};
+template <class T>
+QUADCORE_LAW RollAndYaw<T> roll_and_yaw(const Matrix3<T>& R) {
   // At a pitch of +-90 degrees, roll and yaw rotate about the same axis; yaw takes the whole
   // rotation.
   const auto is_vertical = absolute(R.zx) > 1 - 1e-12;
-  return {chosen_by(is_vertical, T{}, arc_tangent(R.zy, R.zz)), nearest_arc_sine(-R.zx),
-          arc_tangent(chosen_by(is_vertical, -R.xy, R.yx), chosen_by(is_vertical, R.yy, R.xx))};
+  const auto chosen = [&](T at_vertical, T otherwise) QUADCORE_INLINED {
+    return chosen_by(is_vertical, at_vertical, otherwise);
+  };
+  return {{chosen(T{}, R.zy), chosen(broadcast<T>(1), R.zz)},
+          {chosen(-R.xy, R.yx), chosen(R.yy, R.xx)}};
+}
+
+/// Return roll, pitch and yaw [rad] of a rotation, see rpy_from_quaternion().
+template <class T>
+QUADCORE_LAW Vec3<T> roll_pitch_yaw(const Matrix3<T>& R) {
+  const auto [roll, yaw] = roll_and_yaw(R);
+  return {arc_tangent(roll.sin, roll.cos), nearest_arc_sine(-R.zx), arc_tangent(yaw.sin, yaw.cos)};
 }
 
 }  // namespace quadcore::laws
