@@ -9,7 +9,7 @@ namespace quadcore::control {
 
 FlatState flat_state(const Reference& wanted, const ModelledVehicle& model, bool with_drag) {
   FlatTable table(model, with_drag);
-  table.set(0, wanted);
+  table.set(0, wanted, elementary::sincos(wanted.yaw));
   table.solve(1);
   if (!table.is_defined(0)) {
     throw Error(

@@ -6,7 +6,6 @@
 #include "lanes/for_each_width.hpp"
 #include "numbers.hpp"
 #include "quadcore/lane_width.hpp"
-#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
 namespace {
@@ -28,7 +27,8 @@ FlatVehicle describe_flatly(const ModelledVehicle& model, bool with_drag) {
 FlatTable::FlatTable(const ModelledVehicle& model, bool with_drag)
     : vehicle_(describe_flatly(model, with_drag)), width_(lane_width()) {}
 
-void FlatTable::set(std::size_t column, const Reference& wanted) {
+void FlatTable::set(std::size_t column, const Reference& wanted,
+                    const elementary::SineCosine& of_yaw) {
   const auto put = [&](std::size_t row, const Vector3d& vector) {
     for (std::size_t i = 0; i < 3; ++i) *at(row + i, column) = vector[static_cast<int>(i)];
   };
@@ -36,10 +36,8 @@ void FlatTable::set(std::size_t column, const Reference& wanted) {
   put(FlatRow::acceleration, wanted.acceleration);
   put(FlatRow::jerk, wanted.jerk);
   put(FlatRow::snap, wanted.snap);
-  if (wanted.yaw != turned_.yaw || std::signbit(wanted.yaw) != std::signbit(turned_.yaw))
-    turned_ = {wanted.yaw, elementary::sincos(wanted.yaw)};
-  *at(FlatRow::sine, column) = turned_.turn.sin;
-  *at(FlatRow::cosine, column) = turned_.turn.cos;
+  *at(FlatRow::sine, column) = of_yaw.sin;
+  *at(FlatRow::cosine, column) = of_yaw.cos;
   *at(FlatRow::yaw_rate, column) = wanted.yaw_rate;
   *at(FlatRow::yaw_acceleration, column) = wanted.yaw_acceleration;
 }

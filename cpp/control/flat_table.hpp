@@ -1,7 +1,5 @@
 #pragma once
 
-#include <limits>
-
 #include "controller_numbers.hpp"
 #include "flat_states.hpp"
 #include "quadcore/control/flat_state.hpp"
@@ -15,7 +13,8 @@ class FlatTable {
   FlatTable(const ModelledVehicle& model, bool with_drag);
 
   /// Set the reference of a column.
-  void set(std::size_t column, const Reference& wanted);
+  /// \param of_yaw  sine and cosine of its yaw
+  void set(std::size_t column, const Reference& wanted, const elementary::SineCosine& of_yaw);
   /// Compute the flat states of the first columns.
   void solve(std::size_t columns);
   /// Return whether the attitude of a column is defined.
@@ -36,11 +35,6 @@ class FlatTable {
 
   FlatVehicle vehicle_;
   int width_;  ///< how many columns are solved at once
-  /// The last yaw and its sine and cosine, because most references keep their yaw.
-  struct {
-    double yaw = std::numeric_limits<double>::quiet_NaN();
-    elementary::SineCosine turn{};
-  } turned_;
   double rows_[FlatRow::count * widest_lanes] = {};
 };
 

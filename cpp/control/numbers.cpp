@@ -37,17 +37,23 @@ MeasuredNumbers<double> numbers_of(const Odometry& now) {
           numbers_of(now.angular_velocity)};
 }
 
-WantedNumbers<double> numbers_of(const Reference& wanted, const FlatState* flat) {
+namespace {
+
+WantedNumbers<double> without_flat_state(const Reference& wanted, const Vec3<double>& across_W) {
   WantedNumbers<double> numbers{};
   numbers.position = numbers_of(wanted.position);
   numbers.velocity = numbers_of(wanted.velocity);
   numbers.acceleration = numbers_of(wanted.acceleration);
+  numbers.across_W = across_W;
   numbers.yaw_rate = wanted.yaw_rate;
-  if (!flat) {
-    numbers.across_W = numbers_of(across_yaw(wanted.yaw));
-    return numbers;
-  }
-  numbers.across_W = numbers_of(flat->across_W);
+  return numbers;
+}
+
+}  // namespace
+
+WantedNumbers<double> numbers_of(const Reference& wanted, const FlatState* flat) {
+  if (!flat) return without_flat_state(wanted, numbers_of(across_yaw(wanted.yaw)));
+  WantedNumbers<double> numbers = without_flat_state(wanted, numbers_of(flat->across_W));
   numbers.R_WF = numbers_of(flat->R_WF);
   numbers.w_WF_W = numbers.R_WF * numbers_of(flat->w_WF_F);
   numbers.dw_WF_W = numbers.R_WF * numbers_of(flat->dw_WF_F);
@@ -57,8 +63,8 @@ WantedNumbers<double> numbers_of(const Reference& wanted, const FlatState* flat)
 }
 
 WantedNumbers<double> numbers_of(const ReferencePreview::Point& wanted) {
-  return wanted.flat ? wanted.flat->numbers(wanted.wanted, wanted.column)
-                     : numbers_of(wanted.wanted, nullptr);
+  if (wanted.flat) return wanted.flat->numbers(wanted.wanted, wanted.column);
+  return without_flat_state(wanted.wanted, {-wanted.of_yaw.sin, wanted.of_yaw.cos, 0});
 }
 
 Demand demand_of(const DemandNumbers<double>& demand) {

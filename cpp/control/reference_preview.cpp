@@ -1,5 +1,7 @@
 #include "quadcore/control/reference_preview.hpp"
 
+#include <cmath>
+
 #include "flat_table.hpp"
 
 namespace quadcore::control {
@@ -38,9 +40,11 @@ void ReferencePreview::look_ahead(const ReferenceShape& reference, const ListTim
   list_times(times, count);
   points_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    points_[i].time = times[i];
-    points_[i].wanted = reference.at(times[i]);
-    if (table_) table_->set(i, points_[i].wanted);
+    Point& point = points_[i];
+    point.time = times[i];
+    point.wanted = reference.at(times[i]);
+    point.of_yaw = sincos(point.wanted.yaw);
+    if (table_) table_->set(i, point.wanted, point.of_yaw);
   }
   if (table_) table_->solve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -48,6 +52,14 @@ void ReferencePreview::look_ahead(const ReferenceShape& reference, const ListTim
     points_[i].column = i;
   }
   reference_ = reference.serial();
+}
+
+const elementary::SineCosine& ReferencePreview::sincos(double yaw) {
+  if (yaw != yaw_ || std::signbit(yaw) != std::signbit(yaw_)) {
+    yaw_ = yaw;
+    of_yaw_ = elementary::sincos(yaw);
+  }
+  return of_yaw_;
 }
 
 }  // namespace quadcore::control

@@ -133,7 +133,9 @@ TEST_CASE("flat states of several references are bit-identical to those of each 
       const auto wanted = [&](std::size_t i) {
         return i == 3 ? hover->at(0) : eight->at(0.37 * static_cast<double>(i));
       };
-      for (std::size_t i = 0; i < widest_lanes; ++i) table.set(i, wanted(i));
+      for (std::size_t i = 0; i < widest_lanes; ++i) {
+        table.set(i, wanted(i), elementary::sincos(wanted(i).yaw));
+      }
       table.solve(widest_lanes);
       for (std::size_t i = 0; i < widest_lanes; ++i) {
         CAPTURE(i);
@@ -156,8 +158,8 @@ TEST_CASE("a reference without a defined attitude has no flat state next to othe
   FlatTable table(test::odd_belief(4), false);
   Reference falling;
   falling.acceleration.z() = -test::odd_belief(4).gravity;
-  table.set(0, falling);
-  table.set(1, Reference());
+  table.set(0, falling, {0, 1});
+  table.set(1, Reference(), {0, 1});
   table.solve(2);
   CHECK_FALSE(table.is_defined(0));
   CHECK(table.is_defined(1));

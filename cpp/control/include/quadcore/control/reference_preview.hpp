@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "quadcore/control/controller.hpp"
 #include "quadcore/control/reference.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
@@ -23,6 +25,7 @@ class ReferencePreview {
   struct Point {
     double time;       ///< s
     Reference wanted;  ///< reference at this time
+    elementary::SineCosine of_yaw;
     /// Table that contains its flat state until the next points are computed; null if the
     /// controller uses none or it is undefined.
     const FlatTable* flat;
@@ -44,11 +47,15 @@ class ReferencePreview {
 
  private:
   void look_ahead(const ReferenceShape& reference, const ListTimes& list_times);
+  const elementary::SineCosine& sincos(double yaw);
 
   std::unique_ptr<FlatTable> table_;  ///< null if the controller uses no flat state
   std::uint64_t reference_ = 0;       ///< ReferenceShape::serial() of the points; 0: no points
   std::vector<Point> points_;
   std::size_t present_ = 0;  ///< point of the last call
+  /// The last yaw with its sine and cosine, because most references keep their yaw.
+  double yaw_ = std::numeric_limits<double>::quiet_NaN();
+  elementary::SineCosine of_yaw_{};
 };
 
 }  // namespace control
