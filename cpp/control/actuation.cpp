@@ -51,9 +51,10 @@ Actuation::Actuation(const ModelledVehicle& model, const Values& values) : alloc
   for (std::size_t i = 0; i < model.rotors.size(); ++i) {
     const ModelledRotor& rotor = model.rotors[i];
     const bool leads = numbers->lead.lead && numbers->lead.time < rotor.lag;
-    numbers->rotors.push_back({numbers_of(rotor.axis_F), rotor.spin, rotor.momentum,
-                               rotor.lag > 0 ? 1.0 : 0.0, leads ? 1.0 : 0.0, rotor.slowest,
-                               rotor.fastest, allocation_.rotor(i)});
+    const Vector3d h_F = rotor.momentum * rotor.spin * rotor.axis_F;
+    numbers->rotors.push_back({numbers_of(h_F), rotor.spin, rotor.lag > 0 ? 1.0 : 0.0,
+                               leads ? 1.0 : 0.0, rotor.slowest, rotor.fastest,
+                               allocation_.rotor(i)});
     numbers->lags.push_back(rotor.lag);
   }
   numbers_ = std::move(numbers);

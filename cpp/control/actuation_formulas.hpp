@@ -32,8 +32,8 @@ struct AllocatedRotor {
 /// A modelled rotor, see ModelledRotor.
 template <class T>
 struct RotorNumbers {
-  Vec3<T> axis_F;
-  T spin, momentum;
+  Vec3<T> h_F;  ///< angular momentum per unit of speed
+  T spin;
   T lags;   ///< 1 with a lag, else 0
   T leads;  ///< 1 with a compensated lag, else 0
   T slowest, fastest;
@@ -53,7 +53,7 @@ QUADCORE_LAW void add_wrench(const AllocatedRotor<T>& rotor, T square, T left,
 /// Add the angular momentum of a rotor.
 template <class T>
 QUADCORE_LAW void add_momentum(const RotorNumbers<T>& rotor, T speed, Vec3<T>& sum_F) {
-  sum_F = sum_F + (rotor.momentum * rotor.spin * speed) * rotor.axis_F;
+  sum_F = sum_F + speed * rotor.h_F;
 }
 
 /// Return the squared speed for a demand without limits: the one with the minimum sum of squares.
