@@ -124,6 +124,19 @@ def test_a_wrong_shape_fails_the_flight(policy):
         assert "returned the shape (4,). Return (1, 4), a row for each vehicle." in row["failure"]
 
 
+@pytest.mark.parametrize("error", [ValueError, SystemExit])
+def test_seeds_fly_alone_if_the_controller_fails_for_several_vehicles(policy, error):
+    class Single(type(policy)):
+        def __call__(self, t, state, reference):
+            if len(state.position) > 1:
+                raise error("only in a group")
+            return super().__call__(t, state, reference)
+
+    options = {"seeds": 3, "duration": 0.5, "xacro_args": {"sim_slow": 1}}
+    found = qc.evaluate(Single(), "hover", **options)
+    assert [row["failure"] for row in found.table] == [""] * 3
+
+
 def test_the_attribute_is_a_bool(policy):
     policy.vectorized = "yes"
     sim = qc.Simulation("quadrotor", engine="eigen")

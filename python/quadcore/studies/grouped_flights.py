@@ -134,7 +134,9 @@ def fly_group(
                 found = _fly_vectorized(plans, needs_flat_states)
             else:
                 return None
-    except QuadcoreError:
+    except (MemoryError, KeyboardInterrupt):
+        raise
+    except BaseException:  # SystemExit too, as for single flights
         return None
     each = (time.perf_counter() - started) / len(found)
     return [record._replace(elapsed=each) for record in found]
