@@ -12,14 +12,14 @@ from ..control.references import ReferenceLike
 from ..model.description import check_names_argument
 from ..support.arguments import PROGRESS, check, or_none, shorten
 from ..support.warning import warn
-from .commands import CommandsLike
+from .commands import CommandsLike, check_commands
 from .controller_pilot import make_pilot
 from .engines import check_wrenches
 from .fleet_flight import FlightOfVehicle, fly_fleet
-from .flight import Progress, list_columns
+from .flight import Progress, check_log_every, count_steps, list_columns
 from .log import Log
 from .rows import Rows
-from .simulation import Simulation, check_source, start_on
+from .simulation import Simulation, check_source, find_start
 
 CommandsOfFleet = Union[CommandsLike, Mapping[str, Optional[CommandsLike]], None]
 """Commands of all vehicles, or of each by name."""
@@ -119,6 +119,8 @@ class Fleet(_core.Fleet):
         FlightError
             If a flight fails, or a controller returns no valid command.
         """
+        count_steps(duration, self.dt)
+        check_log_every(log_every)
         names = check_names_argument("topics", topics)
         check({"progress": progress}, {"progress": or_none(PROGRESS)})
         tables = _spread("commands", commands, self.names)
@@ -136,22 +138,32 @@ class Fleet(_core.Fleet):
                 check_wrenches(vehicle.engine)
             law, path = controllers[name], references[name]
             check_source(tables[name], law, path)
-            if on_reference and path is not None:
-                path = start_on(vehicle, law, path)
             pilot = None if law is None else make_pilot(law, vehicle, path)
             if pilot is not None and pilot.moves:
                 raise InputError(f"vehicle '{name}': its controller moves the vehicle itself.")
             rows[name] = Rows(vehicle, list_columns(vehicle, names, pilot))
-            receive = rows[name].receive
-            flights.append(
-                FlightOfVehicle(name, vehicle, receive, tables[name], pilot, wrenches, names)
-            )
+            receive, table = rows[name].receive, tables[name]
+            if table is not None:
+                table = check_commands(table, vehicle.command_width)
+            flights.append(FlightOfVehicle(name, vehicle, receive, table, pilot, wrenches, names))
+        if on_reference:  # after all checks, as it moves the vehicles
+            self._start_on(references, controllers)
         try:
             fly_fleet(self, duration, flights, log_every, progress)
         except (Exception, KeyboardInterrupt) as error:
             error.logs = _collect(rows)  # type: ignore[union-attr]
             raise
         return _collect(rows)
+
+    def _start_on(self, references: Mapping[str, Any], controllers: Mapping[str, Any]) -> None:
+        """Move each vehicle with a reference onto it."""
+        starts = {
+            name: find_start(vehicle, controllers[name], references[name])
+            for name, vehicle in self.vehicles.items()
+            if references[name] is not None
+        }
+        for name, start in starts.items():
+            self.vehicles[name].set_state(start)
 
     def __repr__(self) -> str:
         return f"<Fleet of {', '.join(self.names)}, t = {self.time:g} s, steps of {self.dt:g} s>"

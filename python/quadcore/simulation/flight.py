@@ -6,7 +6,7 @@ import math
 import time
 from contextlib import contextmanager, nullcontext
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Callable, Iterator, List, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -108,12 +108,7 @@ def fly(
     FlightError
         If the flight fails, or the pilot returns no valid command.
     """
-    if simulation.in_fleet:
-        raise _core.InputError("run(): this vehicle belongs to a fleet. Use Fleet.run.")
-    if wrenches:
-        check_wrenches(simulation.engine)
-    total = count_steps(duration, simulation.dt)
-    log_every = check_log_every(log_every)
+    total, log_every = check_run(simulation, duration, log_every, wrenches)
     table = None if commands is None else check_commands(commands, simulation.command_width)
     wrenches = wrenches and len(simulation.wrench_terms) > 0
     moves = pilot is not None and pilot.moves
@@ -129,6 +124,17 @@ def fly(
                 most = max(1, min(most, int(_PACED * pace / simulation.dt)))
             waiting = _Pace(pace, simulation.dt)
             _advance(simulation, flight, total, most, receive, progress, pilot, waiting)
+
+
+def check_run(
+    simulation: _core.Simulation, duration: float, log_every: int, wrenches: bool
+) -> Tuple[int, int]:
+    """Return the numbers of steps and of steps per row; raises `InputError` as `fly` does."""
+    if simulation.in_fleet:
+        raise _core.InputError("run(): this vehicle belongs to a fleet. Use Fleet.run.")
+    if wrenches:
+        check_wrenches(simulation.engine)
+    return count_steps(duration, simulation.dt), check_log_every(log_every)
 
 
 class _Pace:

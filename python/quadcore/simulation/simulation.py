@@ -23,10 +23,10 @@ from ..support.values import SPAWN, Number, Value, check_pose, check_whole, form
 from ..support.warning import warn
 from .controller_pilot import make_pilot
 from .engines import ENGINE, EngineName, check_engine_and_step, find_added_engine
-from .flight import Progress, fly, list_columns
+from .flight import Progress, check_run, fly, list_columns
 from .log import Log
 from .rows import Rows
-from .state import LiveState
+from .state import LiveState, State
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -253,12 +253,13 @@ class Simulation(_core.Simulation):
             If the flight fails, or the controller returns no valid command.
         """
         check_source(commands, controller, reference)
-        if on_reference:
-            reference = start_on(self, controller, reference)
         names = check_names_argument("topics", topics)
         check({"progress": progress}, {"progress": or_none(PROGRESS)})
         pilot = None if controller is None else make_pilot(controller, self, reference)
         rows = Rows(self, list_columns(self, names, pilot))
+        if on_reference:  # after all checks, as it moves the vehicle
+            check_run(self, duration, log_every, wrenches)
+            self.set_state(find_start(self, controller, reference))
         try:
             fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot, names)
         except (Exception, KeyboardInterrupt) as error:
@@ -302,17 +303,15 @@ def check_source(commands: object, controller: object, reference: object) -> Non
         raise _core.InputError("a reference needs a controller that follows it. Give one.")
 
 
-def start_on(simulation: Simulation, controller: Any, reference: Any) -> Any:
-    """Set the state of a vehicle on a reference, and return the reference."""
+def find_start(simulation: Simulation, controller: Any, reference: Any) -> State:
+    """Return the state of a vehicle that follows a reference at the present time."""
     if reference is None:
         raise _core.InputError("on_reference needs a reference to begin on. Give one.")
     if isinstance(reference, str):
         reference = references.parse(reference)
     spins = controller.spins if isinstance(controller, BuiltInController) else ()
     with _core.Run(simulation):
-        start = references.start(simulation, reference, spins)
-    simulation.set_state(start)
-    return reference
+        return references.start(simulation, reference, spins)
 
 
 def make_simulation(engine: str, **options: Any) -> Simulation:
