@@ -65,3 +65,19 @@ def test_a_refused_run_of_a_fleet_moves_no_vehicle(wrong):
         fleet.run(**options)
     heights = {name: vehicle.state.position[2] for name, vehicle in fleet.vehicles.items()}
     assert heights == {"a": 5, "b": 9}
+
+
+def test_a_start_on_a_reference_needs_one():
+    without = {"controller": "pd", "on_reference": True}
+    with pytest.raises(qc.InputError, match="needs a reference to begin on"):
+        quadrotor("eigen").run(0.01, **without)
+    with pytest.raises(qc.InputError, match="needs a reference to begin on"):
+        quiet_fleet(a=make_vehicle(5), b=make_vehicle(9)).run(0.01, **without)
+    with pytest.raises(qc.InputError, match="needs a reference to begin on"):
+        qc.FlightPlan.of("quadrotor", engine="eigen", **without).fly()
+
+
+def test_a_vehicle_of_a_fleet_without_a_reference_starts_where_it_is():
+    fleet = quiet_fleet(a=make_vehicle(5), b=make_vehicle(9))
+    logs = fleet.run(**follow(controller={"a": "geometric"}, reference={"a": "hover:height=3"}))
+    assert [log.position[0, 2] for log in logs.values()] == [3, 9]

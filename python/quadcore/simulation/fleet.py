@@ -19,7 +19,7 @@ from .fleet_flight import FlightOfVehicle, fly_fleet
 from .flight import Progress, check_log_every, count_steps, list_columns
 from .log import Log
 from .rows import Rows
-from .simulation import Simulation, check_source, find_start
+from .simulation import Simulation, check_source, check_start, find_start
 
 CommandsOfFleet = Union[CommandsLike, Mapping[str, Optional[CommandsLike]], None]
 """Commands of all vehicles, or of each by name."""
@@ -101,11 +101,13 @@ class Fleet(_core.Fleet):
 
         Parameters
         ----------
-        duration, log_every, progress, wrenches, topics, on_reference
+        duration, log_every, progress, wrenches, topics
             As for `Simulation.run`.
         commands, controller, reference
             As for `Simulation.run`: one for all vehicles, or a mapping of names to that of each
             vehicle, in which vehicles may be missing.
+        on_reference
+            As for `Simulation.run`. Vehicles without a reference start in their present states.
 
         Returns
         -------
@@ -126,6 +128,7 @@ class Fleet(_core.Fleet):
         tables = _spread("commands", commands, self.names)
         controllers = _spread("controller", controller, self.names)
         references = _spread("reference", reference, self.names)
+        check_start(on_reference, *references.values())
         if not isinstance(controller, (str, Mapping, type(None))) and len(self.names) > 1:
             raise InputError(
                 "controller is one object for several vehicles. Give a mapping of names to the "

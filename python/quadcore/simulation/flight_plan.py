@@ -41,7 +41,7 @@ from .log import Log
 from .reference_pilot import PluginPilot
 from .scenarios import Scenario, add_controller, add_wind
 from .scenarios import read_scenario as read_scenario
-from .simulation import Simulation, make_simulation
+from .simulation import Simulation, check_start, make_simulation
 from .state import State
 
 if TYPE_CHECKING:
@@ -290,7 +290,13 @@ class FlightPlan:
         ----------
         simulation : Simulation
             Simulation of this plan.
+
+        Raises
+        ------
+        InputError
+            If the plan starts on a reference, but has none.
         """
+        check_start(self.on_reference, self.reference)
         if not self.on_reference or self.reference is None:
             return None
         spins = self.controller.spins if isinstance(self.controller, BuiltInController) else ()

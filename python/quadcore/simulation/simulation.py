@@ -253,6 +253,7 @@ class Simulation(_core.Simulation):
             If the flight fails, or the controller returns no valid command.
         """
         check_source(commands, controller, reference)
+        check_start(on_reference, reference)
         names = check_names_argument("topics", topics)
         check({"progress": progress}, {"progress": or_none(PROGRESS)})
         pilot = None if controller is None else make_pilot(controller, self, reference)
@@ -303,10 +304,14 @@ def check_source(commands: object, controller: object, reference: object) -> Non
         raise _core.InputError("a reference needs a controller that follows it. Give one.")
 
 
+def check_start(on_reference: bool, *references: object) -> None:
+    """Raise `InputError` if vehicles are to start on references, but none of them has one."""
+    if on_reference and all(reference is None for reference in references):
+        raise _core.InputError("on_reference needs a reference to begin on. Give one.")
+
+
 def find_start(simulation: Simulation, controller: Any, reference: Any) -> State:
     """Return the state of a vehicle that follows a reference at the present time."""
-    if reference is None:
-        raise _core.InputError("on_reference needs a reference to begin on. Give one.")
     if isinstance(reference, str):
         reference = references.parse(reference)
     spins = controller.spins if isinstance(controller, BuiltInController) else ()
