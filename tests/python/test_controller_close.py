@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from flights import HOVER, quadrotor
 
 import quadcore as qc
+from quadcore.studies.grouped_flights import fly_group
+
+HOVERING = qc.references.hover()
 
 
 class Recorder:
@@ -80,6 +85,56 @@ def test_an_error_in_close_ends_a_good_flight_and_is_a_warning_after_a_failure()
     warned = pytest.warns(qc.QuadcoreWarning, match=r"its close\(\) failed: RuntimeError: the soc")
     with warned, pytest.raises(ValueError, match="broken"):
         quadrotor().run(0.01, controller=controller)
+
+
+class VectorRecorder(Recorder):
+    vectorized = True
+
+    def __call__(self, t, state, reference):
+        return np.tile(super().__call__(t, state, reference), (len(state.position), 1))
+
+
+def fail_in_reset():
+    controller = VectorRecorder()
+
+    def fail(simulation):
+        controller.calls.append("reset")
+        raise RuntimeError("no autopilot")
+
+    controller.reset = fail
+    return [controller]
+
+
+@pytest.mark.parametrize(
+    ("make", "calls"),
+    [
+        (lambda: [VectorRecorder()], ["reset", "close"]),
+        (lambda: [VectorRecorder(ValueError("broken"))], ["reset", "close"]),
+        (fail_in_reset, ["reset", "close"]),
+        (lambda: [Recorder()], []),
+        (lambda: [VectorRecorder() for _ in range(3)], []),
+    ],
+    ids=["vectorized", "failing", "failing in reset", "of one vehicle", "three"],
+)
+def test_a_batch_closes_each_controller_that_it_resets(make, calls):
+    controllers = make()
+    batch = qc.BatchSimulation("quadrotor", 3)
+    given = controllers if len(controllers) > 1 else controllers[0]
+    with contextlib.suppress(qc.InputError, ValueError, RuntimeError):
+        batch.run(0.01, controller=given, reference="hover")
+    assert [controller.calls for controller in controllers] == [calls] * len(controllers)
+
+
+@pytest.mark.parametrize(
+    "make", [fail_in_reset, lambda: [VectorRecorder()]], ids=["fails", "flies"]
+)
+def test_a_group_of_seeds_closes_the_controller_that_it_resets(make):
+    (controller,) = make()
+    plan = qc.FlightPlan.of(
+        "quadrotor", engine="eigen", duration=0.01, controller=controller, reference=HOVERING
+    )
+    fly_group([lambda: plan, lambda: replace(plan, seed=1)], 100)
+    assert controller.calls == ["reset", "close"]
 
 
 class Spinner:

@@ -15,6 +15,7 @@ from ..control.references import ReferenceLike
 from ..support.warning import suppress_warnings
 from .batch_vehicles import Vehicles
 from .controller_pilot import ControllerPilot
+from .flight import close_at_end
 from .guided_logs import GuidedLogs
 from .simulation import Simulation, make_simulation
 
@@ -84,7 +85,8 @@ def _make_guide(
     if isinstance(controller, BuiltInController):
         controller = controller.copy()  # its reset is for one vehicle
     pilot = ControllerPilot(controller, simulation, reference)
-    pilot.reset(simulation)
+    if pilot.is_built_in:
+        pilot.reset(simulation)
     return Guide(pilot, simulation, GuidedLogs(simulation, pilot))
 
 
@@ -117,10 +119,9 @@ def follow(
             "controller with vectorized = True for equal vehicles. Use Simulation.run for others."
         )
     pilot = pilots[0]
-    try:
+    with close_at_end(pilot):
+        pilot.reset(guides[0].simulation)
         tables, rows, *_ = batch._follow_together(
             pilot.command_all(batch.n), pilot.rate, pilot.delay, SENSED, steps, log_every
         )
-    finally:
-        pilot.close()
     return [tables[vehicle][: rows[vehicle]] for vehicle in log]

@@ -15,7 +15,7 @@ from ..control.own_columns import list_names
 from ..control.references import Shape
 from ..control.vectorized import is_vectorized
 from ..simulation.controller_pilot import ControllerPilot
-from ..simulation.flight import count_steps
+from ..simulation.flight import close_at_end, count_steps
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.guided_logs import GuidedLogs
 from ..simulation.log import Log
@@ -202,7 +202,8 @@ class _Kind:
             raise QuadcoreError("flights in a saved world are simulated alone")
         pilot = plan.pilot(simulation)
         assert isinstance(pilot, ControllerPilot)
-        pilot.reset(simulation)
+        if pilot.is_built_in:
+            pilot.reset(simulation)
         self.guide = pilot.built_in if pilot.is_built_in else None
         self.plan, self.pilot = plan, pilot
         self.logs = GuidedLogs(simulation, pilot)
@@ -311,7 +312,8 @@ def _fly(plans: Sequence[FlightPlan], needs_flat_states: bool) -> List[FlightRec
 def _fly_vectorized(plans: Sequence[FlightPlan], needs_flat_states: bool) -> List[FlightRecord]:
     first, n = plans[0], len(plans)
     kind = _Kind(first)
-    try:
+    with close_at_end(kind.pilot):
+        kind.pilot.reset(kind.simulation)
         command_all = kind.pilot.command_all(n)
         batch = _make_batch(plans, [kind] * n)
         tables, rows, rates, commands = batch._follow_together(
@@ -322,8 +324,6 @@ def _fly_vectorized(plans: Sequence[FlightPlan], needs_flat_states: bool) -> Lis
             count_steps(first.duration, batch.dt),
             first.log_every,
         )
-    finally:
-        kind.pilot.close()
     failures = batch.failures
     logs = [kind.logs.make(tables[i, : rows[i]]) for i in range(n)]
     return [
