@@ -148,6 +148,16 @@ def test_wrong_arguments_move_nothing(options, message):
     assert batch.time.tolist() == [0, 0, 0]
 
 
+@pytest.mark.parametrize("reference", [None, "hover"])
+def test_a_vectorized_controller_with_columns_for_the_log_is_refused(reference):
+    controller = Hover()
+    controller.log = {"thrust": 1.0}
+    batch = qc.BatchSimulation("quadrotor", 3)
+    with pytest.raises(qc.InputError, match=r"^controller: its log has the values of one vehicle"):
+        batch.run(0.1, log=[0], controller=controller, reference=reference)
+    assert batch.time.tolist() == [0, 0, 0]
+
+
 def test_vehicles_under_way_take_no_controller():
     batch = qc.BatchSimulation("quadrotor", 2)
     batch.step()

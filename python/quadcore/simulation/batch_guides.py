@@ -11,6 +11,7 @@ from .._core import InputError
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED, ControllerLike
 from ..control.keywords import ReferenceName
+from ..control.own_columns import list_names
 from ..control.references import ReferenceLike
 from ..support.warning import suppress_warnings
 from .batch_vehicles import Vehicles
@@ -85,6 +86,11 @@ def _make_guide(
     if isinstance(controller, BuiltInController):
         controller = controller.copy()  # its reset is for one vehicle
     pilot = ControllerPilot(controller, simulation, reference)
+    if pilot.is_vectorized and list_names(controller):
+        raise InputError(
+            "controller: its log has the values of one vehicle, but a batch has several. Remove "
+            "its log, or use Simulation.run."
+        )
     if pilot.is_built_in:
         pilot.reset(simulation)
     return Guide(pilot, simulation, GuidedLogs(simulation, pilot))
