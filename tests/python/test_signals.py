@@ -92,6 +92,34 @@ def test_what_is_held_is_done_before_the_interrupt(number):
 
 
 @pytest.mark.parametrize("number", SIGNALS)
+def test_a_held_signal_is_raised_if_the_block_raises_an_error(number):
+    with pytest.raises(interrupts.Interrupted) as stop, interrupts.raise_on_signals():
+        try:
+            with interrupts.hold_signals(), interrupts.hold_signals():
+                signal.raise_signal(number)
+                raise OSError("the disk is full")
+        except OSError:
+            pass  # as code that continues after an error of the block
+    assert stop.value.number == number
+    assert isinstance(stop.value.__context__, OSError)
+
+
+def test_a_second_interrupt_ends_a_held_block_at_once():
+    heard = []
+    before = signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
+    try:
+        with pytest.raises(KeyboardInterrupt), interrupts.hold_signals():
+            signal.raise_signal(signal.SIGINT)
+            assert heard == []
+            signal.raise_signal(signal.SIGINT)
+            assert heard == [signal.SIGINT]
+            raise KeyboardInterrupt
+        assert heard == [signal.SIGINT]
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("number", SIGNALS)
 def test_an_interrupted_file_leaves_the_old_one_and_nothing_else(number, tmp_path):
     (tmp_path / "a").write_text("old")
     with pytest.raises(KeyboardInterrupt), interrupts.raise_on_signals(), atomic_write(

@@ -99,8 +99,9 @@ def _starts_module_in_c(frame: Optional[FrameType]) -> bool:
 def hold_signals() -> Iterator[None]:
     """Defer `SIGNALS` and SIGALRM until the end of the block, except for a second Ctrl-C.
 
-    Use it for steps that must be complete, such as the replacement of a file. It has no effect
-    outside the main thread, where Python runs no handlers.
+    Use it for steps that must be complete, such as the replacement of a file. A deferred signal
+    takes effect even if the block raises an error, unless that is a KeyboardInterrupt. Outside the
+    main thread, where Python runs no handlers, signals are not deferred.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -122,9 +123,12 @@ def hold_signals() -> Iterator[None]:
                 handlers[number] = handler
                 signal.signal(number, hold)
         yield
+    except KeyboardInterrupt:
+        waiting.clear()  # an interrupt ends the block already
+        raise
     finally:
         holding = False
         for changed, handler in handlers.items():
             signal.signal(changed, handler)
-    if waiting:
-        handlers[waiting[0]](waiting[0], None)
+        if waiting:
+            handlers[waiting[0]](waiting[0], None)
