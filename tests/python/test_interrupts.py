@@ -252,6 +252,21 @@ print(found == {i: -i for i in range(20)})
 """
 
 
+@pytest.mark.parametrize("apart", [False, True])
+def test_no_process_starts_without_a_case(apart, monkeypatch):
+    forked = []
+
+    def fork(fork=os.fork):
+        forked.append(fork())
+        return forked[-1]
+
+    monkeypatch.setattr(os, "fork", fork)
+    found = {}
+    run_cases(abs, iter([-1, -2]), found.__setitem__, processes=8, apart=apart)
+    assert found == {0: 1, 1: 2}
+    assert len(forked) == 2
+
+
 def test_fewer_processes_than_asked_for_do_all_cases():
     """A limit of open files that a few processes reach."""
     done = script(FEW_FILES)

@@ -71,7 +71,8 @@ def run_cases(
         raises a QuadcoreError or its process dies, the result is a QuadcoreError, and the other
         cases continue. An interrupt waits for `take`.
     processes
-        Number of processes; None: one per usable core. Fewer if the system has no more.
+        Number of processes; None: one per usable core. Fewer if there are fewer cases, or the
+        system has no more.
     conclude
         Called with the result in the same process; returns its replacement. An interrupt waits
         until `take` has received the result: a file that `conclude` writes exists if and only if
@@ -188,7 +189,7 @@ class _WorkerPool:
     ) -> None:
         self._task = function, conclude
         self._apart = apart
-        self._queue = enumerate(cases)
+        self._queue: Iterator[Tuple[int, Any]] = enumerate(cases)
         self.busy: Dict[Connection, Tuple[int, Any]] = {}
         """Index of the case and process, by pipe."""
 
@@ -240,23 +241,31 @@ class _WorkerPool:
             _join(process)
 
     def _replace(self) -> bool:
-        """Start another process; returns False if only the existing ones can continue."""
-        try:
-            self._give(*_start(self._task, list(self.busy)))
-        except OSError as error:
-            if not self.busy:
-                raise QuadcoreError(f"no process can be started: {error.strerror}") from error
-            return False
-        return True
+        """Start a process with the next case; returns False without one, or if none can start."""
+        for index, case in itertools.islice(self._queue, 1):
+            try:
+                connection, process = _start(self._task, list(self.busy))
+            except OSError as error:
+                if not self.busy:
+                    raise QuadcoreError(f"no process can be started: {error.strerror}") from error
+                self._queue = itertools.chain([(index, case)], self._queue)
+                return False
+            self._send(connection, process, index, case)
+            return True
+        return False
 
     def _give(self, connection: Connection, process: Any) -> None:
+        """Send the next case to an idle process, which ends if none remains."""
         for index, case in itertools.islice(self._queue, 1):
-            self.busy[connection] = index, process
-            with contextlib.suppress(BrokenPipeError):  # recv reports that it died
-                connection.send(case)
+            self._send(connection, process, index, case)
             return
-        connection.close()  # no case remains: the process ends
+        connection.close()
         _join(process)
+
+    def _send(self, connection: Connection, process: Any, index: int, case: Any) -> None:
+        self.busy[connection] = index, process
+        with contextlib.suppress(BrokenPipeError):  # recv reports that it died
+            connection.send(case)
 
 
 def _join(process: Any) -> None:
