@@ -18,7 +18,7 @@ from ..support import interrupts, parse
 from . import options, reading, run_folder, terminal
 from .parser import add_command, find_group
 from .run_summary import describe_result
-from .run_vehicle import RunVehicle, print_result
+from .run_vehicle import RunVehicle, print_files, print_result
 
 if TYPE_CHECKING:
     from ..simulation.flight_plan import FlightPlan
@@ -147,11 +147,16 @@ def _run(arguments: argparse.Namespace) -> None:
         logs = recording.close()
     result = vehicle.summarize(elapsed)
     rows = describe_result(result)
-    files = vehicle.write_results(logs, rows)
-    if arguments.json:
+    is_shown = not (arguments.json or arguments.quiet)
+    try:
+        if is_shown:
+            print_result(rows)  # plots and page take longer than the flight
+    finally:  # also if the reader of the summary, such as `head`, needs no more
+        files = vehicle.write_results(logs, rows)
+    if is_shown:
+        print_files(files, rows)
+    elif arguments.json:
         terminal.print_json({**result, "files": [str(file) for file in files]})
-    elif not arguments.quiet:
-        print_result(rows, files)
     if view is not None:
         view.page.wait_for_pages(_PATIENCE)
     recording.check()

@@ -153,9 +153,17 @@ def _fly(fleet: Fleet, flown: Dict[str, RunVehicle], out: Optional[Path]) -> Non
             unsimulated = [*results[name].get("unsimulated", []), "contact between vehicles"]
             results[name]["unsimulated"] = unsimulated
     rows = {name: describe_result(result) for name, result in results.items()}
-    files = {name: flown[name].write_results(logs[name], rows[name]) for name in flown}
-    shared = [] if out is None else _write_shared(out, flown, rows)
-    _print(first.arguments, results, rows, files, shared)
+    is_shown = not (first.arguments.json or first.arguments.quiet)
+    try:
+        for name in flown if is_shown else ():
+            print_result(rows[name], name)  # plots and pages take longer than the flight
+    finally:  # also if the reader of the summaries, such as `head`, needs no more
+        files = {name: flown[name].write_results(logs[name], rows[name]) for name in flown}
+        shared = [] if out is None else _write_shared(out, flown, rows)
+    if is_shown:
+        terminal.print_written([*itertools.chain(*files.values()), *shared])
+    elif first.arguments.json:
+        _print_json(results, files, shared)
     for vehicle in flown.values():
         vehicle.recording.check()
         vehicle.warn()
@@ -211,21 +219,14 @@ def _describe_vehicle(rows: Sequence[Tuple[str, str]]) -> List[str]:
     return [f"{name}: {text}" for name, text in rows]
 
 
-def _print(
-    arguments: argparse.Namespace,
+def _print_json(
     results: Mapping[str, Mapping[str, Any]],
-    rows: Mapping[str, Sequence[Tuple[str, str]]],
     files: Mapping[str, Sequence[Path]],
     shared: Sequence[Path],
 ) -> None:
-    """Print the results of all vehicles."""
-    if arguments.json:
-        vehicles = {
-            name: {**result, "files": [str(file) for file in files[name]]}
-            for name, result in results.items()
-        }
-        terminal.print_json({"vehicles": vehicles, "files": [str(file) for file in shared]})
-    elif not arguments.quiet:
-        for name in results:
-            print_result(rows[name], files[name], name)
-        terminal.print_written(shared)
+    """Print the results of all vehicles as JSON."""
+    vehicles = {
+        name: {**result, "files": [str(file) for file in files[name]]}
+        for name, result in results.items()
+    }
+    terminal.print_json({"vehicles": vehicles, "files": [str(file) for file in shared]})

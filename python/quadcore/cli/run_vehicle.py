@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from ..simulation.flight_plan import FlightPlan
     from ..simulation.simulation import Simulation
 
+Rows = Sequence[Tuple[str, str]]
+"""Lines of a summary, each a name and a text."""
+
 
 class RunVehicle:
     """A vehicle with its pilot, the recorders of its flight and the files to write.
@@ -85,7 +88,7 @@ class RunVehicle:
             self.errors,
         )
 
-    def write_results(self, logs: Sequence[Path], rows: Sequence[Tuple[str, str]]) -> List[Path]:
+    def write_results(self, logs: Sequence[Path], rows: Rows) -> List[Path]:
         """Write plots and page, and return all files of the flight."""
         files = list(logs)
         if self.drawn is not None:
@@ -102,12 +105,25 @@ class RunVehicle:
             warn_of_yaw_zero(self.simulation, self.errors.max)
 
 
-def print_result(rows: Sequence[Tuple[str, str]], files: Sequence[Path], title: str = "") -> None:
-    """Print the lines of a summary, and the files that were written."""
+def print_result(rows: Rows, title: str = "") -> None:
+    """Print the lines of a summary."""
+    _print_lines(rows, title)
+
+
+def print_files(files: Sequence[Path], rows: Rows) -> None:
+    """Print the files that were written, as further lines of the summary with these rows."""
+    width = max(len(name) for name, _ in rows)
+    named = [("" if i else "written", str(file)) for i, file in enumerate(files)]
+    _print_lines([(name.ljust(width), file) for name, file in named])
+
+
+def _print_lines(rows: Rows, title: str = "") -> None:
+    if not rows:
+        return
     table = terminal.make_table("", "", show_header=False)
     if title:
         table.title = title
-    for row in [*rows, *(("" if i else "written", str(file)) for i, file in enumerate(files))]:
+    for row in rows:
         table.add_row(*row)
     terminal.make_console().print(table)
 
