@@ -41,12 +41,11 @@ def test_omitted_figures_are_named_and_the_others_are_complete(monkeypatch):
     )
 
 
-def test_margins_have_the_colours_of_their_controllers(found, monkeypatch):
+def test_margins_have_the_colours_of_their_controllers(found):
     margins = [{"controller": name} for name in ("lqr", "pd")]
     figure = plots._draw_rates(margins, [2, 0])
     lines = {line.get_label(): line.get_color() for line in figure.axes[0].lines}
     assert lines == {"lqr": plots.curve_style(2)["color"], "pd": plots.curve_style(0)["color"]}
     assert plots.is_plot("rates")
-    monkeypatch.setattr(plots, "finish", lambda figure: figure)
-    drawn = plots.draw(found._replace(margins=margins))["rates"]
+    drawn = plots.list_figures(found._replace(margins=margins))["rates"]()
     assert {line.get_label(): line.get_color() for line in drawn.axes[0].lines} == lines

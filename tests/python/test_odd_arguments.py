@@ -155,7 +155,7 @@ def test_tables_are_written_before_pictures(toy, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("quadcore.report.plots.finish", fail)
-    vary = ["--vary", "motor.kp=1e-4,2e-4", "--duration", "0.01", "--out", "out"]
+    vary = ["--vary", "motor.kp=1e-4,2e-4", "--duration", "0.01", "--out", "out", "--jobs", "1"]
     assert main(["compare", "toy.urdf", *vary]) == 130
     assert Path("out/table.csv").exists() and Path("out/comparison.json").exists()
 

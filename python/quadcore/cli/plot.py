@@ -9,6 +9,7 @@ from typing import Any, List, Sequence
 from ..report.decimation import decimate
 from ..report.drawing import save_drawings
 from ..simulation.log import Log
+from ..studies.figures import draw_figures
 from ..studies.option_info import OUTPUT
 from ..support.output_files import make_folder
 from . import options, terminal
@@ -58,11 +59,9 @@ def plot_logs(arguments: argparse.Namespace) -> None:
 
 
 def _plot_together(names: Sequence[str], logs: Sequence[Log], folder: Path) -> List[Path]:
-    from ..report.plots import finish
-    from ..studies.compare.plots import Curve, draw  # matplotlib is slow to import
+    from ..studies.compare.plots import Curve, list_figures  # matplotlib is slow to import
 
     curves = [Curve(name, decimate(log, _ROWS)) for name, log in zip(names, logs)]
-    figures = draw(curves, curves[0].log, names[0])
+    figures = list_figures(curves, curves[0].log, names[0])
     make_folder(folder)
-    drawings = {name: finish(figure, is_on_page=False) for name, figure in figures.items()}
-    return save_drawings(folder, drawings)
+    return save_drawings(folder, draw_figures(figures, is_on_page=False))

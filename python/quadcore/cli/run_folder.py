@@ -8,7 +8,7 @@ from typing import Dict, List, Mapping, Sequence, Tuple
 
 from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
-from ..report.drawing import Drawing, name_files
+from ..report.drawing import Drawing, name_files, save_drawings
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
@@ -67,9 +67,13 @@ def _describe_conditions(plan: FlightPlan, summary: Mapping[str, str]) -> str:
 
 
 def _draw(log: Log, folder: Path) -> Dict[str, Drawing]:
-    from ..report.log_plots import draw  # matplotlib is slow to import
+    # matplotlib and multiprocessing are slow to import.
+    from ..report.log_plots import list_figures
+    from ..studies.figures import draw_figures
 
-    return draw(log, folder)
+    drawings = draw_figures(list_figures(log))
+    save_drawings(folder, drawings)
+    return drawings
 
 
 def write_results(

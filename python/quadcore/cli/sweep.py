@@ -117,7 +117,7 @@ def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
         terminal.print_message(f"rows so far: {out / TABLE}. Add --resume to continue.")
         raise
     columns = make_table(rows)
-    files = write(plan, columns, out, measure, not arguments.no_plots)
+    files = write(plan, columns, out, measure, not arguments.no_plots, arguments.jobs)
     if not arguments.quiet:
         _show(plan, columns, measure, files)
     _report_failures(columns)

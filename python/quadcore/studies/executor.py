@@ -5,6 +5,7 @@ from __future__ import annotations
 import collections
 import contextlib
 import ctypes
+import gc
 import itertools
 import multiprocessing
 import os
@@ -297,6 +298,7 @@ def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
 def _run_worker(
     task: Task, pipe: Connection, inherited: List[Connection], parent: int, report: IO[bytes]
 ) -> None:
+    gc.freeze()  # the parent's objects: no search for garbage visits or copies them
     try:
         _set_signals(parent)
         time_limit.report_to(report)

@@ -12,6 +12,7 @@ from ...model.obstacles import draw_world, join_worlds
 from ...model.visuals import read_vehicle
 from ...report.decimation import pick_evenly
 from ...report.drawing import Drawing, save_drawings
+from ..figures import draw_figures
 from ..flight_folder import DOCUMENT, WrittenFlight, remove_flights, write_flights
 from ..output_folder import remove_listed_files
 from ..table import (
@@ -99,9 +100,7 @@ def summarise(comparison: Comparison) -> str:
 
 
 def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, Drawing]:
-    # matplotlib is slow to import.
-    from ...report.plots import finish
-    from . import plots
+    from . import plots  # matplotlib is slow to import
 
     curves, against = [], None
     for row, (log, variant) in enumerate(zip(comparison.logs, plan)):
@@ -110,8 +109,8 @@ def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, Drawing]:
             against = curves[-1] if row == comparison.against else against
     if against is None:
         return {}
-    figures = plots.draw(curves, against.log, against.label)
-    return {name: finish(figure) for name, figure in figures.items()}
+    figures = plots.list_figures(curves, against.log, against.label)
+    return draw_figures(figures, plan.options.processes)
 
 
 def _list_flights(comparison: Comparison, plan: Plan) -> List[WrittenFlight]:

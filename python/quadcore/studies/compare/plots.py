@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from ...report.colours import PALETTE
 from ...report.plots import NOTHING, WHOLE, add_unslowed_axis, flatten, make_figure, panels, space
 from ...simulation.log import Log
 from ...support.rotation import unwrap_angles
+from ..figures import Figures
 from ..flight_differences import compute_differences
 
 _LABELS = 6  # in the legend of many flights
@@ -25,8 +27,8 @@ class Curve(NamedTuple):
     log: Log
 
 
-def draw(curves: Sequence[Curve], against: Log, name: str) -> Dict[str, Figure]:
-    """Draw the flights and their differences from a baseline.
+def list_figures(curves: Sequence[Curve], against: Log, name: str) -> Figures:
+    """List the figures of the flights and of their differences from a baseline.
 
     Parameters
     ----------
@@ -39,12 +41,12 @@ def draw(curves: Sequence[Curve], against: Log, name: str) -> Dict[str, Figure]:
     """
     styles = _curve_styles(curves)
     return {
-        "path": _draw_path(curves, styles),
-        "position": _draw_position(curves, styles),
-        "attitude": _draw_attitude(curves, styles),
-        "rates": _draw_rates(curves, styles),
-        "rotors": _draw_rotors(curves, styles),
-        "differences": _draw_differences(curves, styles, against, name),
+        "path": partial(_draw_path, curves, styles),
+        "position": partial(_draw_position, curves, styles),
+        "attitude": partial(_draw_attitude, curves, styles),
+        "rates": partial(_draw_rates, curves, styles),
+        "rotors": partial(_draw_rotors, curves, styles),
+        "differences": partial(_draw_differences, curves, styles, against, name),
     }
 
 

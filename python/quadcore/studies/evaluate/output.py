@@ -11,6 +11,7 @@ import numpy as np
 from ... import __version__
 from ...report.drawing import Drawing
 from ...support.output_files import encode_text
+from ..figures import draw_figures
 from ..flight_folder import DOCUMENT, remove_flights
 from ..output_folder import remove_plots, save_plots
 from ..table import (
@@ -33,7 +34,7 @@ from .margins import BOX, ENDS, format_margin
 from .overview import describe_best, make_overview
 from .paper_tables import make_latex, make_rows
 from .plan import Plan
-from .plots import draw, group_flights, is_plot, make_label, name_group
+from .plots import group_flights, is_plot, list_figures, make_label, name_group
 from .poles import format_poles as poles_text
 from .poles import read_gains
 from .ranks import describe_ranks, rank_controllers
@@ -82,7 +83,8 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     is_whole = all(row["failure"] != NOT_FLOWN for row in evaluation.table)
     step_error = measure_step_error(plan) if is_whole else None
     content["step_error"] = None if step_error is None else step_error._asdict()
-    images = draw(evaluation, plan.list_events()) if plots else {}
+    figures = list_figures(evaluation, plan.list_events()) if plots else {}
+    images = draw_figures(figures, plan.options.processes)
     written += save_plots(folder, "evaluation.json", content, images)
     page = folder / "report.html"
     animations = make_animations(evaluation, plan) if plots else []

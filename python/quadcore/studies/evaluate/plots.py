@@ -10,13 +10,13 @@ import numpy as np
 
 from ...report.colours import PALETTE, curve_style
 from ...report.decimation import pick_evenly
-from ...report.drawing import Drawing
-from ...report.plots import REFERENCE, dress, finish, make_figure, panels
+from ...report.plots import REFERENCE, dress, make_figure, panels
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 from ...simulation.scenario_events import Event
+from ..figures import Figures
 from ..measured_flight import Outcome
 from ..tracking_metrics import compute_errors, find_failure_time
 from .evaluate import Evaluation
@@ -47,10 +47,10 @@ Flights = List[DrawnFlight]
 """Flights that share a figure."""
 
 
-def draw(
+def list_figures(
     evaluation: Evaluation, events: Optional[Mapping[str, Sequence[Event]]] = None
-) -> Dict[str, Drawing]:
-    """Draw all plots of an evaluation.
+) -> Figures:
+    """List the figures of an evaluation, in the order of the page.
 
     Parameters
     ----------
@@ -58,45 +58,30 @@ def draw(
         Flights and statistics.
     events
         Events by scenario.
-
-    Returns
-    -------
-    dict
-        `Drawing` by name, in the order of the page.
     """
-    figures: Dict[str, Figure] = {}
+    figures: Figures = {}
     for i, ((reference, scenario), flights) in enumerate(group_flights(evaluation).items(), 1):
         name = name_group(evaluation, reference, scenario)
-        figures[f"tracks_{i}"] = _draw_tracks(name, flights)
-        figures[f"errors_{i}"] = _draw_errors(name, flights)
-        figures[f"rotors_{i}"] = _draw_rotors(name, flights)
-        for kind in ("errors", "rotors"):
-            mark_events(figures[f"{kind}_{i}"], (events or {}).get(scenario, ()))
+        happening = (events or {}).get(scenario, ())
+        figures[f"tracks_{i}"] = partial(_draw_tracks, name, flights)
+        figures[f"errors_{i}"] = partial(_draw_errors, name, flights, happening)
+        figures[f"rotors_{i}"] = partial(_draw_rotors, name, flights, happening)
         if any(flight.outcome.response is not None for flight in flights):
-            figures[f"response_{i}"] = _draw_responses(name, flights)
+            figures[f"response_{i}"] = partial(_draw_responses, name, flights)
         if any(flight.outcome.spectra is not None for flight in flights):
-            figures[f"spectra_{i}"] = _draw_spectra(name, flights)
+            figures[f"spectra_{i}"] = partial(_draw_spectra, name, flights)
     if any(group["flights"] * (1 - group["failure_rate"]) > 1 for group in evaluation.groups):
-        figures["seeds"] = _draw_boxes(evaluation)
+        figures["seeds"] = partial(_draw_boxes, evaluation)
     if any(not row["failure"] for row in evaluation.loops):
-        styles = _number_styles(evaluation)
-        label = partial(_name_curve, evaluation=evaluation)
-        figures["loops"] = draw_loops(evaluation.loops, label, styles, _header_height(list(styles)))
-        _add_legend(figures["loops"], *figures["loops"].axes)
+        figures["loops"] = partial(_draw_loops, evaluation)
     if evaluation.margins:
-        figures["margins"] = _draw_margins(evaluation.margins)
-        controllers = [row["controller"] for row in evaluation.table]
-        styles = _number_styles(evaluation)
-        of_margins = [
-            styles[_name_curve(evaluation.table[controllers.index(row["controller"])], evaluation)]
-            for row in evaluation.margins
-        ]
-        figures["rates"] = _draw_rates(evaluation.margins, of_margins)
-    return {name: finish(figure) for name, figure in figures.items()}
+        figures["margins"] = partial(_draw_margins, evaluation.margins)
+        figures["rates"] = partial(_draw_rates, evaluation.margins, _style_margins(evaluation))
+    return figures
 
 
 def is_plot(name: str) -> bool:
-    """Whether `draw` makes plots with that name."""
+    """Whether `list_figures` lists figures with that name."""
     return (
         re.fullmatch(r"(tracks|errors|rotors|response|spectra)_\d+|seeds|margins|rates|loops", name)
         is not None
@@ -172,7 +157,7 @@ def _draw_tracks(name: str, flights: Flights) -> Figure:
     return figure
 
 
-def _draw_errors(name: str, flights: Flights) -> Figure:
+def _draw_errors(name: str, flights: Flights, events: Sequence[Event]) -> Figure:
     title = f"Tracking error: {name}"
     figure, grid = panels(
         title, 1, height=2.8, above=_header_height([flight.label for flight in flights])
@@ -188,10 +173,11 @@ def _draw_errors(name: str, flights: Flights) -> Figure:
     axes.set_ylabel(_ERROR)
     axes.set_ylim(_FLOOR / 1.5, max(axes.get_ylim()[1], 1e4 * _FLOOR))
     _add_legend(figure, axes)
+    mark_events(figure, events)
     return figure
 
 
-def _draw_rotors(name: str, flights: Flights) -> Figure:
+def _draw_rotors(name: str, flights: Flights, events: Sequence[Event]) -> Figure:
     drawn = [flights[i] for i in pick_evenly(len(flights), _ROTOR_PANELS)]
     title = f"Rotor speed: {name}"
     if len(drawn) < len(flights):
@@ -214,6 +200,7 @@ def _draw_rotors(name: str, flights: Flights) -> Figure:
         axes.set_title(label, loc="left", fontsize="small", pad=2)
         axes.set_ylabel("speed (rad/s)")
     _add_legend(figure, *grid[:, 0])
+    mark_events(figure, events)
     return figure
 
 
@@ -307,6 +294,22 @@ def _draw_margins(rows: Any) -> Figure:
     gain.set_yticks(places)
     gain.set_yticklabels([row["controller"] for row in rows], fontsize="small")
     return figure
+
+
+def _draw_loops(evaluation: Evaluation) -> Figure:
+    styles = _number_styles(evaluation)
+    label = partial(_name_curve, evaluation=evaluation)
+    figure = draw_loops(evaluation.loops, label, styles, _header_height(list(styles)))
+    _add_legend(figure, *figure.axes)
+    return figure
+
+
+def _style_margins(evaluation: Evaluation) -> List[int]:
+    """Return the numbers of the styles of the margins' rows, those of their controllers."""
+    controllers = [row["controller"] for row in evaluation.table]
+    styles = _number_styles(evaluation)
+    firsts = [controllers.index(row["controller"]) for row in evaluation.margins]
+    return [styles[_name_curve(evaluation.table[row], evaluation)] for row in firsts]
 
 
 def _draw_rates(rows: Any, styles: Sequence[int]) -> Figure:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ... import __version__
 from ..._core import InputError
+from ..figures import draw_figures
 from ..flight_folder import DOCUMENT, remove_flights
 from ..output_folder import remove_plots, save_plots
 from ..step_error import compute_step_error
@@ -42,7 +43,14 @@ def choose_metric(plan: AnyPlan, asked: Optional[str] = None) -> str:
     return asked or plan.measures[0]
 
 
-def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bool) -> List[Path]:
+def write(
+    plan: AnyPlan,
+    columns: Columns,
+    folder: Path,
+    measure: str,
+    plots: bool,
+    processes: Optional[int] = None,
+) -> List[Path]:
     """Write `FILES` except the table, which exists already, and plots.
 
     Parameters
@@ -55,6 +63,8 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         Metric that is drawn and ranked.
     plots
         Whether to draw.
+    processes
+        Number of processes that draw; None: one per core.
     """
     from ...report.page import write_page  # jinja2 is slow to import
 
@@ -76,7 +86,8 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
     written = save_files(folder, {"sweep.json": make_json(content)})
     watched = watch_rows(plan, columns, measure)
     written += write_watched_rows(watched, folder)
-    images = sweep_plots.draw(plan, columns, found, measure) if plots else {}
+    figures = sweep_plots.list_figures(plan, columns, found, measure) if plots else {}
+    images = draw_figures(figures, processes)
     written += save_plots(folder, "sweep.json", content, images)
     page = folder / "report.html"
     write_page(

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
 from ...report.colours import PALETTE
 from ...report.decimation import pick_evenly
-from ...report.drawing import Drawing
-from ...report.plots import dress, finish, make_figure, panels
+from ...report.plots import dress, make_figure, panels
+from ..figures import Figures
 from .plan import AnyPlan
 from .sensitivity import COMBINATION, list_combinations, list_numeric_axes, measure_effect
 
@@ -27,10 +28,10 @@ _COLOURS = "viridis"
 Columns = Mapping[str, np.ndarray]
 
 
-def draw(
+def list_figures(
     plan: AnyPlan, columns: Columns, sensitivities: Sequence[Mapping[str, Any]], measure: str
-) -> Dict[str, Drawing]:
-    """Draw the distribution and the sensitivities of a metric.
+) -> Figures:
+    """List the figures of the distribution and the sensitivities of a metric.
 
     Parameters
     ----------
@@ -38,11 +39,6 @@ def draw(
         Plan, results and sensitivities of the sweep.
     measure
         Metric to draw.
-
-    Returns
-    -------
-    dict
-        `Drawing` by name.
     """
     found = list(list_combinations(columns))
     parts = [
@@ -59,18 +55,18 @@ def draw(
     parts = parts[:_COMBINATIONS]
     label = f"{measure} ({plan.units[measure]})" if plan.units[measure] else measure
     rows = {_make_label(names, [other for other, _ in found]): len(at) for names, at in found}
-    figures: Dict[str, Figure] = {
-        "measure": _draw_distribution(parts, rows, columns[measure], label, note)
+    figures: Figures = {
+        "measure": partial(_draw_distribution, parts, rows, columns[measure], label, note)
     }
     axes = list_numeric_axes(plan, columns)[:_AXES]
     found_rows = [row for row in sensitivities if row["measure"] == measure and row["axis"] in axes]
     if found_rows:
-        figures["sensitivity"] = _draw_sensitivity(found_rows, measure)
+        figures["sensitivity"] = partial(_draw_sensitivity, found_rows, measure)
         leading = _leading_axes(found_rows)
-        figures["surface"] = _draw_surface(parts, columns, leading, measure, label, note)
+        figures["surface"] = partial(_draw_surface, parts, columns, leading, measure, label, note)
     if len(axes) > 1:
-        figures["parallel"] = _draw_parallel(parts, columns, axes, measure, label, note)
-    return {name: finish(figure) for name, figure in figures.items()}
+        figures["parallel"] = partial(_draw_parallel, parts, columns, axes, measure, label, note)
+    return figures
 
 
 Parts = List[Tuple[str, np.ndarray]]
