@@ -120,7 +120,7 @@ def test_the_core_writes_one_log_of_each_vehicle():
 
 def test_the_core_refuses_a_controller_of_another_number_of_rotors():
     batch = qc.BatchSimulation("firefly", 2)
-    with pytest.raises(qc.InputError, match="controller of vehicle 1 drives 4 rotors.* takes 6"):
+    with pytest.raises(qc.InputError, match=r"controller of vehicle 1 drives 4 rotors.* takes 6"):
         follow_in_the_core(batch, [controller_of(name) for name in ("firefly", "quadrotor")], [0])
     assert batch.time.tolist() == [0, 0]
 

@@ -287,5 +287,5 @@ def test_a_state_that_is_not_finite_is_no_state_for_a_controller(controller):
     law.reset(sim)
     state = sim.state.copy()
     state.linear_velocity[1] = np.inf
-    with pytest.raises(qc.InputError, match="state.linear_velocity is not finite"):
+    with pytest.raises(qc.InputError, match=r"state\.linear_velocity is not finite"):
         law.core.command(0.01, state, qc.Reference())

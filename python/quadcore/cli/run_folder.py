@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Dict, List, Mapping, Sequence, Tuple
 
+from ..control.built_in import BuiltInController
+from ..control.references import Shape
 from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
 from ..report.drawing import Drawing, name_files, save_drawings
@@ -66,13 +68,18 @@ def _describe_conditions(plan: FlightPlan, summary: Mapping[str, str]) -> str:
     return "; ".join([*parts, step, f"seed {plan.seed}"]) + "."
 
 
-def _draw(log: Log, folder: Path) -> Dict[str, Drawing]:
+def _draw(arguments: argparse.Namespace, plan: FlightPlan, log: Log) -> Dict[str, Drawing]:
     # matplotlib and multiprocessing are slow to import.
     from ..report.log_plots import list_figures
     from ..studies.figures import draw_figures
 
-    drawings = draw_figures(list_figures(log))
-    save_drawings(folder, drawings)
+    # User code and live views may have threads, which forked processes would lack.
+    is_alone = not arguments.live and all(
+        thing is None or isinstance(thing, built_in)
+        for thing, built_in in ((plan.controller, BuiltInController), (plan.reference, Shape))
+    )
+    drawings = draw_figures(list_figures(log), None if is_alone else 1)
+    save_drawings(arguments.out, drawings)
     return drawings
 
 
@@ -90,7 +97,7 @@ def write_results(
     log.per_command = per_command(simulation)
     name = f"{simulation.model.name}, {simulation.engine}"
     log.title = ", ".join(filter(None, (name, log.title)))
-    plots = {} if arguments.no_plots else _draw(log, arguments.out)
+    plots = {} if arguments.no_plots else _draw(arguments, plan, log)
     page = arguments.out / PAGE
     flight = PlayerFlight(
         name,

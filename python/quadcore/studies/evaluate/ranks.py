@@ -124,7 +124,7 @@ def _exceed_range(width: float, count: int) -> float:
     highest = np.linspace(-8.5, 8.5, 401)  # the density beyond is below 1e-16
     density = np.exp(-(highest**2) / 2) / math.sqrt(2 * math.pi)
     others = (ndtr(highest) - ndtr(highest - width)) ** (count - 1)
-    within = count * (highest[1] - highest[0]) * float(density @ others)
+    within = count * float(highest[1] - highest[0]) * float(density @ others)
     return max(0.0, 1 - within)
 
 
