@@ -17,14 +17,14 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def accept_options(kind: Type[Options], **own: Kind) -> Callable[[Function], Function]:
-    """Let a function take options as ``**options``, shown by its signature and docstring.
+    """Let a function take options as ``**options``; its signature and docstring list them.
 
     Parameters
     ----------
     kind
         The options.
     **own
-        Kinds of other arguments; all are checked before the function is called.
+        Kinds of the other arguments. All arguments are checked before the function is called.
     """
 
     def decorate(function: Function) -> Function:
@@ -57,7 +57,7 @@ def accept_options(kind: Type[Options], **own: Kind) -> Callable[[Function], Fun
 
 
 def _paragraphs(kind: Type[Options]) -> str:
-    """Write the options as a docstring's parameters."""
+    """Format the options as the parameters of a docstring."""
     lines = []
     for each in fields(kind):
         meaning = explain(each.metadata["about"], each.default)

@@ -13,7 +13,7 @@ from .._core import InputError, parse_number
 from ..support.values import Value, format_value
 
 WHOLE = ("engine", "world", "scenario")
-"""Axes that are not parameters."""
+"""Names of the axes that do not vary a parameter."""
 
 OF_CONTROLLER = "controller."
 """Prefix of axes that vary a controller: its rate, delay or a parameter."""
@@ -25,18 +25,18 @@ class Axis(NamedTuple):
     """A varied quantity."""
 
     name: str
-    """``PLUGIN.TAG``, ``LINK.mass`` or the like, ``xacro.ARG``, several of them joined by commas,
-    or one of `WHOLE`."""
+    """``PLUGIN.TAG``, a value such as ``LINK.mass``, ``xacro.ARG``, several of these joined by
+    commas, or one of `WHOLE`."""
     values: Sequence[str]
 
     @property
     def tags(self) -> List[str]:
-        """Plugin tags that take the value; none for an axis of `WHOLE`."""
+        """Plugin tags that take the value; empty for an axis of `WHOLE`."""
         return [] if self.name in WHOLE else self.name.split(",")
 
 
 class Range(Sequence[str]):
-    """Numbers as texts, evenly spaced or in a geometric progression, computed on access."""
+    """Evenly or geometrically spaced numbers as texts, computed on access."""
 
     def __init__(self, first: float, last: float, count: int, geometric: bool) -> None:
         self._first, self._last, self._size, self._geometric = first, last, count, geometric
@@ -52,7 +52,7 @@ class Range(Sequence[str]):
             value = self._first * (self._last / self._first) ** part
         else:
             value = self._first + part * (self._last - self._first)
-        return f"{value:.12g}"  # as a person writes it: 0.3
+        return f"{value:.12g}"  # short form, such as 0.3
 
 
 def parse_axis(name: str, text: str) -> Axis:

@@ -1,4 +1,4 @@
-"""Cases of a study: all combinations, read and checked before the first flight."""
+"""Cases of a study: all combinations of its inputs, checked before the first flight."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from .variation import Variation, pick_controller_values
 T = TypeVar("T", bound=Options)
 
 LOG_RATE = 100.0
-"""Rows per second for the metrics of a flight."""
+"""Default rate of the logged rows from which the metrics are computed, 1/s."""
 
 
 class Case(NamedTuple):
@@ -58,16 +58,16 @@ class Case(NamedTuple):
 class Cases(Sequence[Case]):
     """Combinations of controllers, references, engines, models, points and seeds.
 
-    The last varies fastest.
+    The seed varies fastest.
 
     Parameters
     ----------
     design
-        Points of the axes.
+        Points of the varied axes.
     control
         Controllers and references.
     models, engines
-        Files or names.
+        Model files or names, and engine names.
     options
         Options that all flights share.
     wrenches
@@ -132,7 +132,7 @@ class Cases(Sequence[Case]):
         return [model.name for model in self.variation.models]
 
     def name_sides(self, case: Case) -> Dict[str, str]:
-        """Return the names of controller and reference, if any, engine and model of a case."""
+        """Return the names of controller, reference, engine and model of a case."""
         found = {"engine": self.engines[case.engine], "model": self.models[case.model]}
         if not self.control.is_closed_loop:
             return found
@@ -155,7 +155,7 @@ class Cases(Sequence[Case]):
         return replace(plan, log_every=self.steps_per_row(plan.step))
 
     def make_plan(self, case: Case) -> FlightPlan:
-        """Make the plan of a flight; errors of the controller pass through."""
+        """Make the plan of a flight; errors of the controller propagate."""
         plan = self.make_plan_without_controller(case)
         if not self.control.is_closed_loop:
             return plan
@@ -178,7 +178,7 @@ class Cases(Sequence[Case]):
                     ControllerPilot(self._make_controller(i, model, point), vehicle).reset(vehicle)
 
     def check(self, commands: Optional[CommandsLike] = None) -> List[Simulation]:
-        """Build each model and start each built-in controller on it, at some of the points.
+        """Build each model and start each built-in controller on it, at the trial points.
 
         Parameters
         ----------
@@ -188,7 +188,7 @@ class Cases(Sequence[Case]):
         Returns
         -------
         list of Simulation
-            Vehicle of each model at the first point.
+            One vehicle per model, at the first point.
 
         Raises
         ------
@@ -200,7 +200,7 @@ class Cases(Sequence[Case]):
             for i, point in enumerate(self.design.pick_trial_points()):
                 with (
                     suppress_warnings() if i else nullcontext()
-                ):  # the first point gives the warnings
+                ):  # warn only once, at the first point
                     vehicle = self.make_vehicle(model, point)
                     self.start_controllers(model, point, vehicle)
                 if not i:
@@ -214,14 +214,14 @@ class Cases(Sequence[Case]):
         return made
 
     def set_commands(self, commands: CommandsLike, widths: Sequence[int]) -> None:
-        """Set the commands of all flights; `widths` are the numbers of rotors of the models."""
+        """Set the commands of all flights; `widths` contains the command width of each model."""
         self._plans = [
             replace(plan, commands=check_commands(commands, width))
             for plan, width in zip(self._plans, widths)
         ]
 
     def steps_per_row(self, dt: float) -> int:
-        """Return the number of steps between logged rows."""
+        """Return the number of simulation steps between logged rows."""
         if self.options.log_every is None:
             return max(1, round(1 / (LOG_RATE * dt)))
         return self.options.log_every
@@ -283,7 +283,7 @@ class Cases(Sequence[Case]):
 
 
 def check_models(models: Sequence[Union[str, Path]], design: Design) -> None:
-    """Raise `InputError` if a model is named twice, or an axis varies the engines."""
+    """Raise `InputError` if a model is given twice, or an axis varies the engine."""
     check_labels("model", [printable_name(model) for model in models])
     if "engine" in design.names:
         raise InputError("vary engine: engines are not an axis here. Use --engine A,B.")
@@ -292,7 +292,7 @@ def check_models(models: Sequence[Union[str, Path]], design: Design) -> None:
 def make_scenario_axis(
     vary: Mapping[str, Any], options: T, least: int = 1
 ) -> Tuple[Mapping[str, Any], T]:
-    """Make an axis of the scenarios in the options, if there are at least `least`."""
+    """Turn the scenarios in the options into an axis if there are at least `least` of them."""
     scenario: Any = options.scenario
     names = list(scenario) if isinstance(scenario, (list, tuple)) else [scenario]
     if scenario is None or not names:
@@ -305,7 +305,7 @@ def make_scenario_axis(
 
 
 def check_labels(kind: str, names: Sequence[str]) -> None:
-    """Raise `InputError` if there is no name, or one occurs twice."""
+    """Raise `InputError` if the list is empty or contains a name twice."""
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"{kind} '{name}' is named twice. Remove one, or label them.")
@@ -314,7 +314,7 @@ def check_labels(kind: str, names: Sequence[str]) -> None:
 
 
 def label_point(point: Mapping[str, str]) -> str:
-    """Label a point."""
+    """Return the label of a point."""
     return " ".join(
         value if name == "scenario" else f"{name}={value}" for name, value in point.items()
     )
@@ -322,7 +322,7 @@ def label_point(point: Mapping[str, str]) -> str:
 
 @contextmanager
 def _name_point_in_errors(point: Mapping[str, str]) -> Iterator[None]:
-    """Add the controller values of a point to errors of the block."""
+    """Prefix errors in the block with the controller values of a point."""
     try:
         yield
     except InputError as error:

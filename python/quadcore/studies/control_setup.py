@@ -29,20 +29,21 @@ References = Union[_Reference, Mapping[str, _Reference], Sequence[_Reference]]
 
 
 class ControlSetup:
-    """Controllers and references with labels; empty for open-loop flights.
+    """Controllers and references with labels; both are empty for open-loop flights.
 
     Parameters
     ----------
     controllers, references_
-        Labels, and names as on the command line or objects as for `Simulation.run`.
+        Pairs of a label and a name (as on the command line) or an object (as for `Simulation.run`).
     controller_rate, delay
-        Timing of all controllers; None keeps that of each controller.
+        Update rate (1/s) and actuation delay (s) of all controllers. None keeps the controller's
+        own value.
     on_reference
         Whether flights start on the reference.
     privileged
-        Whether user-defined controllers receive the simulation instead of a view of the vehicle.
-        Their labels then say so. None: they receive it, and nothing is compared that they could
-        win by it.
+        Whether user-defined controllers receive the simulation (marked in their labels) or only a
+        view of the vehicle. None: they receive the simulation without a mark, for studies that do
+        not rank controllers.
 
     Raises
     ------
@@ -66,12 +67,12 @@ class ControlSetup:
         ]
         self.references = [label for label, _ in references_]
         self.things = [thing for _, thing in controllers]
-        """Controllers as given."""
+        """Controllers as passed by the user."""
         self.shapes = [make_reference(thing) for _, thing in references_]
         self.timing = {"rate": controller_rate, "delay": delay}
         self.on_reference = on_reference
         self.computation_times: Dict[int, float] = {}
-        """Times that delay each command in addition to its delay, s, by index of the controller."""
+        """Computation times by index of the controller, s, which increase its actuation delay."""
         self._own_delays: Dict[Tuple[int, str], float] = {}
         self._make_factory = lru_cache(maxsize=None)(
             lambda i, vehicle: _make_factory(self.things[i], vehicle)
@@ -86,9 +87,9 @@ class ControlSetup:
         controller_rate: Optional[float],
         delay: Optional[float],
     ) -> ControlSetup:
-        """Make a setup of one controller and one reference, or of neither.
+        """Make a setup with one controller and one reference, or an empty one.
 
-        Without a reference the vehicle hovers at the spawn.
+        Without a reference, the vehicle hovers at the spawn position.
         """
         if controller is None:
             given = {"reference": reference, "controller_rate": controller_rate, "delay": delay}
@@ -108,7 +109,7 @@ class ControlSetup:
 
     @property
     def runs_user_code(self) -> bool:
-        """Whether flights call user code, which may keep state from flight to flight."""
+        """Whether flights call user code, which may keep state between flights."""
         return any(map(_is_user_code, self.things)) or not all(
             isinstance(one, references.Shape) for one in self.shapes
         )
@@ -118,20 +119,20 @@ class ControlSetup:
         return _is_user_code(self.things[controller])
 
     def is_plugin(self, controller: int) -> bool:
-        """Whether a controller is a C++ plugin."""
+        """Whether a controller uses a C++ plugin."""
         return _is_plugin(self.things[controller])
 
     def is_privileged(self, controller: int) -> bool:
-        """Whether a study marks a controller, see `PRIVILEGED`."""
+        """Whether a controller is marked as privileged; see `PRIVILEGED`."""
         return _is_privileged(self.things[controller], self.privileged)
 
     def make(self, controller: int, vehicle: str, values: Mapping[str, float]) -> Any:
-        """Make a controller with some values for one flight of a vehicle."""
+        """Make the controller of one flight, with some parameter values."""
         given = {name: x for name, x in {**self.timing, **values}.items() if x is not None}
         made = self._make_factory(controller, vehicle)(given)
         time = self.computation_times.get(controller, 0.0)
         if time:
-            # An object is shared by its flights, so that its delay may contain the time already.
+            # Flights share the object, so its delay may already contain the computation time.
             own = self._own_delays.setdefault(
                 (controller, vehicle), float(getattr(made, "delay", DELAY))
             )
@@ -148,7 +149,7 @@ class ControlSetup:
         )
 
     def check(self, vehicles: Iterable[str]) -> None:
-        """Raise `InputError` if a built-in controller cannot be made for one of the vehicles."""
+        """Raise `InputError` if a built-in controller does not support one of the vehicles."""
         for vehicle in vehicles:
             for controller in range(len(self.things)):
                 self._make_factory(controller, vehicle)
@@ -168,7 +169,7 @@ def add_labels(kind: str, things: Any, one: type) -> List[Tuple[str, Any]]:
 
 
 def make_reference(thing: Any) -> Any:
-    """Make a reference from its name; return callables unchanged."""
+    """Make a reference from its name; callables are returned unchanged."""
     if isinstance(thing, str):
         return references.parse(thing)
     if not callable(thing):
@@ -180,7 +181,7 @@ def make_reference(thing: Any) -> Any:
 
 
 def names_user_code(thing: Any) -> bool:
-    """Whether a text names a user-defined controller."""
+    """Whether `thing` is the name of a user-defined controller."""
     if not isinstance(thing, str):
         return False
     if controllers.names_added_file(thing) or controllers.names_plugin(thing):
@@ -205,9 +206,9 @@ def _is_plugin(thing: Any) -> bool:
 
 
 def _is_privileged(thing: Any, privileged: Optional[bool]) -> bool:
-    """Whether a study marks a controller.
+    """Whether a controller is marked as privileged.
 
-    Plugins in C++ have access to the whole simulation, and autopilots read the true state as their
+    C++ plugins have access to the whole simulation, and autopilots read the true state as their
     sensors.
     """
     if _is_plugin(thing) or (isinstance(thing, str) and controllers.names_added_file(thing)):
@@ -224,11 +225,11 @@ def set_parameters(controller: Any, values: Mapping[str, Any]) -> Any:
 
 
 def _make_factory(thing: Any, vehicle: str) -> Callable[[Mapping[str, float]], Any]:
-    """Return a function that makes the controller of a flight with values for its parameters.
+    """Return a function that makes the controller of a flight from parameter values.
 
-    It imports user modules.
+    This function imports user modules.
 
-    Objects are shared, as flights with user code run in separate processes.
+    Flights share user-defined objects, because they run in separate processes.
     """
     if names_user_code(thing):
         return lambda values: controllers.parse(thing, vehicle, values)

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def summarise_durations(seconds: np.ndarray) -> Tuple[float, float]:
-    """Return median and 99 % quantile, s; NaN without a call."""
+    """Return the median and the 99 % quantile, s; NaN without calls."""
     if not len(seconds):
         return float("nan"), float("nan")
     middle, slow = np.interp([0.5, 0.99], np.linspace(0, 1, len(seconds)), np.sort(seconds))

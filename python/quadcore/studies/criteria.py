@@ -1,4 +1,4 @@
-"""Criteria of a study: limit of a failure, constraints and further metrics."""
+"""Criteria of a study: failure limit, constraints and additional metrics."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class _Constraint(NamedTuple):
 
     unit: str
     meaning: str
-    """Text with the limit."""
+    """Description with a placeholder for the limit."""
     find: Callable[[FlightRecord, Sequence[float]], np.ndarray]
-    """Returns whether each row violates the limit."""
+    """Returns a boolean array (rows), true where the limit is violated."""
     size: int = 1
-    """Number of numbers of the limit."""
+    """Number of values of the limit."""
 
 
 def _exceeds(compute: Callable[[Log], np.ndarray]) -> Callable[..., np.ndarray]:
@@ -34,7 +34,7 @@ def _exceeds(compute: Callable[[Log], np.ndarray]) -> Callable[..., np.ndarray]:
 
 
 def _compute_accelerations(log: Log) -> np.ndarray:
-    """Return the norm of the mean acceleration until the next row, m/s^2; of the last row, 0."""
+    """Return the norm of the mean acceleration until the next row, m/s^2; 0 for the last row."""
     change = np.diff(log.linear_velocity, axis=0) / np.diff(log.time)[:, None]
     return np.append(np.linalg.norm(change, axis=1), 0.0)
 
@@ -70,30 +70,30 @@ CONSTRAINTS = {
     "clearance": _Constraint("m", "less than {} m from an obstacle", _is_close),
     "geofence": _Constraint("m", "outside the box {} m", _is_outside, 6),
 }
-"""Kinds of constraints, by name."""
+"""Supported constraints by name."""
 
 Metric = Union[str, Callable[[Log], float]]
 
 METRICS = {**tracking_errors.METRICS, **estimation_errors.METRICS}
-"""Unit and meaning of each value of the built-in metrics, by metric."""
+"""For each built-in metric, the unit and meaning of each of its values."""
 
 
 @dataclass(frozen=True)
 class Criteria:
-    """Limit of a failure, constraints and further metrics of a study.
+    """Failure limit, constraints and additional metrics of a study.
 
     Raises
     ------
     InputError
-        From `make`, if a constraint or metric does not exist or has a wrong limit.
+        From `make`, if a constraint or metric does not exist or a limit is invalid.
     """
 
     failure_distance: float = FAILURE_DISTANCE
-    """Tracking error at which a flight has failed, m."""
+    """Tracking error above which a flight has failed, m."""
     constraints: Tuple[Tuple[str, Tuple[float, ...]], ...] = ()
-    """Names and limits."""
+    """Name and limit of each constraint."""
     metrics: Tuple[Metric, ...] = ()
-    """Names of `METRICS`, ``FILE.py:NAME``, ``MODULE:NAME``, or functions."""
+    """Names in `METRICS`, ``FILE.py:NAME``, ``MODULE:NAME``, or functions."""
 
     @classmethod
     def make(
@@ -102,7 +102,7 @@ class Criteria:
         constraints: Optional[Mapping[str, Any]],
         metrics: Sequence[Metric],
     ) -> Criteria:
-        """Check the options of a study, and import its metrics."""
+        """Check the criteria options of a study, and import its metrics."""
         limits = {name: _read_limit(name, value) for name, value in (constraints or {}).items()}
         made = cls(float(failure_distance), tuple(limits.items()), tuple(metrics))
         names: List[str] = list(UNITS)
@@ -150,12 +150,12 @@ class Criteria:
         return any(metric in estimation_errors.METRICS for metric in self.metrics)
 
     def measure(self, flight: FlightRecord) -> Dict[str, float]:
-        """Compute the values of constraints and metrics of a completed flight.
+        """Compute the constraint violations and metrics of a completed flight.
 
         Raises
         ------
         QuadcoreError
-            If a metric of the user fails.
+            If a user-defined metric fails.
         """
         found: Dict[str, float] = {}
         spacing = np.diff(flight.log.time)
@@ -174,7 +174,7 @@ class Criteria:
 
 
 DEFAULT = Criteria()
-"""Criteria of a study without options for them."""
+"""Criteria of a study without criteria options."""
 
 
 def _read_limit(name: str, value: Any) -> Tuple[float, ...]:
@@ -226,5 +226,5 @@ def _call(metric: Metric, log: Log) -> float:
         return float(value)
     except (KeyboardInterrupt, MemoryError):
         raise
-    except BaseException as error:  # SystemExit too
+    except BaseException as error:  # includes SystemExit
         raise QuadcoreError(f"metric '{_name(metric)}': {describe_error(error)}") from error

@@ -1,4 +1,4 @@
-"""Designs: the points of the axes that a study simulates."""
+"""Designs: sets of points of the axes that a study simulates."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from . import distributions
 from .axes import Axis, make_axes, parse_axis
 
 LARGEST = 1_000_000
-"""Maximum number of rows of a sweep."""
+"""Maximum number of samples, and of rows of a sweep."""
 
-_LARGEST = 10**8  # bytes of a file of points
+_LARGEST = 10**8  # maximum size of a file of points, bytes
 
 Point = Dict[str, str]
 
 
 class Block(NamedTuple):
-    """Axes that vary together, with a row of values per point."""
+    """Axes that vary together: each row contains their values at one point."""
 
     names: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -28,15 +28,15 @@ class Block(NamedTuple):
 
 
 class Design(Sequence[Point]):
-    """All combinations of the points of several blocks; the last block varies fastest.
+    """All combinations of the points of several blocks, where the last block varies fastest.
 
     Parameters
     ----------
     vary
         Values by name of the axis: a list, a text as for ``--vary``, or a distribution with a
-        method ``ppf``. Names joined by commas share the values.
+        method ``ppf``. Names joined by commas share the same values.
     points
-        CSV file; each row is a point of the axes in the header.
+        CSV file with a header of axis names and one point per row.
     design, samples, seed
         See `distributions.draw_points`.
 
@@ -56,7 +56,7 @@ class Design(Sequence[Point]):
     ) -> None:
         listed: Dict[str, Any] = {}
         self.drawn: Dict[str, Any] = {}
-        """Distribution of each sampled axis."""
+        """Distribution of each randomly sampled axis."""
         for name, given in vary.items():
             made = distributions.parse(name, given) if isinstance(given, str) else given
             if hasattr(made, "ppf"):
@@ -116,14 +116,14 @@ class Design(Sequence[Point]):
         }
 
     def values(self, name: str) -> Iterator[str]:
-        """Yield the values of an axis, perhaps repeated; none if the axis does not exist."""
+        """Yield the values of an axis, possibly repeated; nothing if the axis does not exist."""
         for block in self.blocks:
             if name in block.names:
                 column = list(block.names).index(name)
                 yield from (row[column] for row in block.rows)
 
     def pick_trial_points(self) -> List[Point]:
-        """Return points that contain each value of each axis, or the ends of a long axis."""
+        """Return points that cover all values of each block, or the extremes of a long block."""
         if not len(self):
             return []
         first: Point = self[0]
@@ -134,7 +134,7 @@ class Design(Sequence[Point]):
         return list({tuple(point.items()): point for point in chosen}.values())
 
     def describe(self) -> Dict[str, Any]:
-        """Return the number of values of each axis and the sampling, as plain values."""
+        """Return the number of values of each axis and the sampling settings, as plain values."""
         return {
             "axes": {name: len(set(self.values(name))) for name in self.names},
             "design": self.kind if self.drawn else None,
@@ -150,11 +150,11 @@ class Design(Sequence[Point]):
                 taken.append(part)
 
 
-_FEW = 16  # values of an axis that are all checked before the first flight
+_FEW = 16  # maximum number of rows of a block that are all checked before the first flight
 
 
 class _Column(Sequence[Tuple[str]]):
-    """The values of one axis as rows."""
+    """Values of one axis as rows."""
 
     def __init__(self, axis: Axis) -> None:
         self._values = axis.values
@@ -167,12 +167,12 @@ class _Column(Sequence[Tuple[str]]):
 
 
 def list_forms() -> List[str]:
-    """List the forms of the distributions."""
+    """List the formats of the distributions."""
     return distributions.list_forms()
 
 
 def _end_rows(block: Block) -> List[int]:
-    """Return the rows with the minimum and maximum of each numeric column."""
+    """Return the first and last row, and those with the extremes of each numeric column."""
     found = [0, len(block.rows) - 1]
     for column in range(len(block.names)):
         try:

@@ -12,16 +12,16 @@ from .._core import InputError, parse_number
 from ..support.optional_packages import require_package
 
 DIGITS = 12
-"""Digits of samples: fewer than in a double, so that all machines write the same text."""
+"""Significant digits of samples, few enough for all machines to write the same text."""
 
 
 class Distribution(NamedTuple):
-    """A distribution that the command line can name."""
+    """A distribution that the command line supports."""
 
     arguments: Tuple[str, ...]
     meaning: str
     make: Callable[..., Any]
-    """Returns a frozen distribution of scipy.stats."""
+    """Returns a frozen distribution of ``scipy.stats``."""
 
 
 def _import_stats() -> Any:
@@ -67,12 +67,12 @@ KNOWN: Dict[str, Distribution] = {
 
 
 def list_forms() -> List[str]:
-    """List the forms of the distributions."""
+    """List the formats of the distributions."""
     return [":".join((name, *known.arguments)) for name, known in KNOWN.items()]
 
 
 def parse(name: str, text: str) -> Optional[Any]:
-    """Read ``NAME:NUMBER:...``; return None for any other text.
+    """Parse ``NAME:NUMBER:...``; return None if NAME is not a distribution.
 
     Raises
     ------
@@ -141,7 +141,7 @@ DESIGNS: Dict[str, Tuple[str, Callable[[int, int, int], np.ndarray]]] = {
         _draw_saltelli,
     ),
 }
-"""Designs in the unit cube by name, with their description."""
+"""For each design, its description and a function that draws points in the unit cube."""
 
 
 def make_unit_problem(dimensions: int) -> Dict[str, Any]:
@@ -156,28 +156,28 @@ def make_unit_problem(dimensions: int) -> Dict[str, Any]:
 def draw_points(
     names: Sequence[str], distributions: Sequence[Any], design: str, samples: int, seed: int
 ) -> List[List[str]]:
-    """Draw values of several axes.
+    """Draw sample points of several axes.
 
     Parameters
     ----------
     names, distributions
-        Axes and their distributions, objects with a method ``ppf``.
+        Names of the axes, and their distributions with a method ``ppf``.
     design
         One of `DESIGNS`.
     samples
-        Number of samples; "saltelli" makes more points.
+        Number of samples; the design "saltelli" has more points.
     seed
         Seed of the random numbers.
 
     Returns
     -------
     list of list of str
-        Row of values per point.
+        Values of the axes at each point.
 
     Raises
     ------
     InputError
-        If the design does not exist, does not support the number of samples, or a value is not
+        If the design does not exist or does not support the number of samples, or a value is not
         finite.
     """
     if design not in DESIGNS:
@@ -208,6 +208,6 @@ def _import_qmc() -> Any:
 
 
 def _seed_argument(engine: Any, seed: int) -> Dict[str, Any]:
-    """Return the seed under the argument name of this release of scipy."""
+    """Return the seed as a keyword argument, named as this version of SciPy requires."""
     named = "rng" if "rng" in inspect.signature(engine.__init__).parameters else "seed"
     return {named: np.random.default_rng(seed)}

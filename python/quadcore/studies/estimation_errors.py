@@ -18,7 +18,7 @@ METRICS = {
         ),
     },
 }
-"""Unit and meaning of each value, by metric."""
+"""For each metric, the unit and meaning of its values."""
 
 
 def measure(rows: Optional[np.ndarray]) -> Dict[str, float]:

@@ -38,11 +38,11 @@ Take = Callable[[int, Union[Any, QuadcoreError]], Any]
 Progress = Callable[[int, int], None]
 Task = Tuple[Callable[[Any], Any], Callable[[Any], Any]]
 
-# Forked: no copy of the caller's data, no need to import its script.
+# Fork: the child needs no copy of the caller's data and does not import its script.
 _FORK = multiprocessing.get_context("fork")
 
-_PATIENCE = 10.0  # s; time for a process to end
-_PR_SET_PDEATHSIG = 1  # of linux/prctl.h
+_PATIENCE = 10.0  # s; time that a process has to end
+_PR_SET_PDEATHSIG = 1  # constant of linux/prctl.h
 
 
 def count_cores() -> int:
@@ -63,33 +63,35 @@ def run_cases(
     Parameters
     ----------
     function
-        Callable that runs in forked processes; its result must be picklable. An interrupt reaches
-        it as `interrupts.Interrupted`, so that it can clean up.
+        Callable that runs in forked processes; its result must be picklable. On an interrupt it
+        receives `interrupts.Interrupted`, so that it can clean up.
     cases
-        Cases, perhaps from a generator; each idle process takes the next one.
+        Cases, possibly from a generator. Each idle process takes the next case.
     take
-        Called as take(index, result) for each case, in the order of completion. If `function`
-        raises a QuadcoreError or its process dies, the result is a QuadcoreError, and the other
-        cases continue. An interrupt waits for `take`.
+        Function called as take(index, result) for each case, in the order of completion. If
+        `function` raises a QuadcoreError or its process dies, the result is a QuadcoreError, and
+        the other cases continue. An interrupt waits for `take`.
     processes
-        Number of processes; None: one per usable core. Fewer if there are fewer cases, or the
-        system has no more.
+        Number of processes. None: one per usable core. If there are fewer cases, or the system cannot
+        start all of them, fewer run.
     conclude
-        Called with the result in the same process; returns its replacement. An interrupt waits
-        until `take` has received the result: a file that `conclude` writes exists if and only if
-        the result does.
+        Function called with the result in the same process; its return value replaces the result.
+        An interrupt waits until `take` has received the result. Therefore a file written by
+        `conclude` exists if and only if the result does.
     apart
-        Whether each case has a separate process, a copy of this one, so that cases share no state.
+        Whether each case runs in a separate process, a copy of this one, so that cases share no
+        state.
 
     Raises
     ------
     KeyboardInterrupt
-        After `take` has received the available results. No process remains, also if this process
-        dies or `take` raises.
+        On an interrupt, after `take` has received the available results. No process remains, even
+        if this process dies or `take` raises.
     QuadcoreError
         If the system cannot start a process.
     RuntimeError
-        If `function` raises another exception; contains its traceback. See `contain_errors`.
+        If `function` raises any other exception; the message contains the traceback. See
+        `contain_errors`.
     """
     pool = _WorkerPool(function, conclude, cases, apart)
     try:
@@ -116,12 +118,12 @@ def run_contained(
     progress: Optional[Progress] = None,
     apart: bool = False,
 ) -> None:
-    """Call `run_cases`, but let any exception fail only its case.
+    """Call `run_cases` so that an exception fails only its own case.
 
     Parameters
     ----------
     progress
-        Called as progress(done, total) after each `take`; requires `cases` with a length.
+        Function called as progress(done, total) after each `take`; `cases` must have a length.
     """
     done = 0
 
@@ -138,14 +140,14 @@ def run_contained(
 
 
 def call_apart(function: Callable[[], Result]) -> Result:
-    """Call a function in a process of its own, and return its result, which must be picklable.
+    """Call a function in a separate process, and return its result, which must be picklable.
 
     Raises
     ------
     QuadcoreError
         If the function raises an exception, or its process dies.
     KeyboardInterrupt
-        If the user interrupts; no process remains.
+        If the user interrupts; no process remains in this case.
     """
     outcomes: List[Any] = []
     run_contained(lambda _: function(), [0], lambda _, outcome: outcomes.append(outcome), 1)
@@ -163,7 +165,7 @@ def contain_errors(function: Callable[[Case], Result]) -> Callable[[Case], Resul
             return function(case)
         except (QuadcoreError, MemoryError, KeyboardInterrupt):
             raise
-        except BaseException as error:  # SystemExit too: user code must not end the study
+        except BaseException as error:  # includes SystemExit: user code must not end the study
             raise QuadcoreError(describe_error(error)) from error
 
     return call
@@ -175,11 +177,11 @@ class ProcessDied(QuadcoreError):
     def __init__(self, exit_code: int, reason: str = "") -> None:
         super().__init__(reason or _describe_death(exit_code))
         self.was_killed = exit_code < 0
-        """Whether a signal ended it, perhaps for a reason unrelated to the case."""
+        """Whether a signal ended the process, possibly for a reason unrelated to the case."""
 
 
 class _WorkerPool:
-    """Processes that run cases."""
+    """Pool of processes that run cases."""
 
     def __init__(
         self,
@@ -192,10 +194,10 @@ class _WorkerPool:
         self._apart = apart
         self._queue: Iterator[Tuple[int, Any]] = enumerate(cases)
         self.busy: Dict[Connection, Tuple[int, Any]] = {}
-        """Index of the case and process, by pipe."""
+        """Index of the running case and the process, by pipe."""
 
     def start(self, processes: int) -> None:
-        """Start processes, as many as the system allows, each with a case."""
+        """Start up to this number of processes, each with a case."""
         for _ in range(processes):
             with interrupts.hold_signals():
                 if not self._replace():
@@ -214,7 +216,7 @@ class _WorkerPool:
             self._replace()
             return index, ProcessDied(process.exitcode, reason)
         if fault is not None:
-            self.busy[connection] = index, process  # to be ended
+            self.busy[connection] = index, process  # so that stop() ends it
             raise RuntimeError(fault)
         if self._apart:
             connection.close()
@@ -225,7 +227,7 @@ class _WorkerPool:
         return index, result
 
     def stop(self) -> Iterator[Tuple[int, Any]]:
-        """End all processes, and yield the results that are complete."""
+        """End all processes, and yield the completed results."""
         for _, process in self.busy.values():
             process.terminate()
         while self.busy:
@@ -242,7 +244,7 @@ class _WorkerPool:
             _join(process)
 
     def _replace(self) -> bool:
-        """Start a process with the next case; returns False without one, or if none can start."""
+        """Start a process with the next case; return False if there is no case, or no process can start."""
         for index, case in itertools.islice(self._queue, 1):
             try:
                 connection, process = _start(self._task, list(self.busy))
@@ -256,7 +258,7 @@ class _WorkerPool:
         return False
 
     def _give(self, connection: Connection, process: Any) -> None:
-        """Send the next case to an idle process, which ends if none remains."""
+        """Send the next case to an idle process, which ends if no case remains."""
         for index, case in itertools.islice(self._queue, 1):
             self._send(connection, process, index, case)
             return
@@ -265,12 +267,12 @@ class _WorkerPool:
 
     def _send(self, connection: Connection, process: Any, index: int, case: Any) -> None:
         self.busy[connection] = index, process
-        with contextlib.suppress(BrokenPipeError):  # recv reports that it died
+        with contextlib.suppress(BrokenPipeError):  # recv reports the dead process
             connection.send(case)
 
 
 def _join(process: Any) -> None:
-    """Wait for the end of a process."""
+    """Wait until a process ends."""
     process.join()
     process.report.close()
 
@@ -302,7 +304,7 @@ def _run_worker(
     try:
         _set_signals(parent)
         time_limit.report_to(report)
-        for connection in inherited:  # so that the parent's death closes them
+        for connection in inherited:  # so that the pipes close when the parent dies
             connection.close()
         _serve(*task, pipe)
     except interrupts.Interrupted as stop:  # cleanup is complete
@@ -323,7 +325,7 @@ def _serve(
 
 
 def _call(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Optional[str]]:
-    """Return the result or a QuadcoreError, and the traceback of any other exception."""
+    """Return the result or a QuadcoreError, and the traceback of any other exception or None."""
     try:
         return function(argument), None
     except InputError as error:
@@ -337,10 +339,10 @@ def _call(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Optional[
 
 
 def _set_signals(parent: int) -> None:
-    """Ignore Ctrl-C and a closed terminal, which the parent handles; end at SIGTERM."""
+    """Ignore Ctrl-C and a closed terminal, which the parent handles; SIGTERM ends the process."""
 
     def end(number: int, _: Any) -> None:
-        signal.signal(number, signal.SIG_IGN)  # it may arrive twice
+        signal.signal(number, signal.SIG_IGN)  # the signal may arrive twice
         raise interrupts.Interrupted(number)
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -9,7 +9,7 @@ import numpy as np
 from ..simulation.log import Log
 from ..support.rotation import subtract_angles
 
-# Norms of the difference vectors, and the angle between the attitudes.
+# Norms of difference vectors, and the angle between the attitudes.
 _WHOLE = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s"}
 _PARTS = {
     **dict.fromkeys(("x", "y", "z"), "m"),
@@ -25,23 +25,23 @@ def list_states(rotor_count: int) -> Dict[str, str]:
 
 
 def compute_differences(against: Log, log: Log) -> np.ndarray:
-    """Compute the difference of each state from another flight, over their common time.
+    """Compute the difference of each state from another flight, within their common time.
 
-    If the times of the rows differ, the other flight is interpolated.
+    If the rows have different times, the other flight is interpolated.
 
     Returns
     -------
     ndarray, shape (rows, 16 + n)
-        Columns as in `list_states` for the n rotors of the other flight; NaN for the rotors if
-        their numbers differ. Angles lie within [-pi, pi]; of the two equivalent Euler-angle
-        triples, the nearer one is used.
+        Columns as in `list_states` for the n rotors of the other flight; the rotor columns are NaN
+        if the numbers of rotors differ. Angles lie within [-pi, pi]; of the two equivalent
+        Euler-angle triples, the nearer one is used.
     """
     log = Log(log.table[log.time <= against.time[-1] + 1e-9], {})
     against = _interpolate(log.time, against)
     position = log.position - against.position
     angles = subtract_angles(log.rpy, against.rpy)
-    # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles,
-    # and independent of the sign of a quaternion.
+    # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle. This form is exact for
+    # small angles and independent of the sign of a quaternion.
     apart = np.linalg.norm(log.orientation - against.orientation, axis=1)
     together = np.linalg.norm(log.orientation + against.orientation, axis=1)
     attitude = 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
@@ -57,10 +57,10 @@ def compute_differences(against: Log, log: Log) -> np.ndarray:
 
 
 class DifferenceSizes(NamedTuple):
-    """Final, maximum and RMS difference of two flights, by state."""
+    """Final, maximum and RMS difference between two flights by state."""
 
     final: Dict[str, float]
-    """Final difference, with sign."""
+    """Signed final difference."""
     max: Dict[str, float]
     """Maximum magnitude."""
     rms: Dict[str, float]
@@ -74,7 +74,7 @@ def summarise_differences(rows: np.ndarray, names: Sequence[str]) -> DifferenceS
 
 
 def compute_final_and_max(against: Log, log: Log) -> np.ndarray:
-    """Compute the final and the maximum difference of each state; shape (2, 16 + n)."""
+    """Compute the final and the maximum difference of each state, shape (2, 16 + n)."""
     names = list_states(against.rotor_velocity.shape[1])
     found = summarise_differences(compute_differences(against, log), list(names))
     return np.array([list(found.final.values()), list(found.max.values())])

@@ -1,4 +1,4 @@
-"""Flights in an output folder: logs, expanded models, and ``run.json``, which lists them."""
+"""Flights in an output folder: logs, expanded models, and ``run.json``, which lists the flights."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ from .output_folder import remove_listed_files
 from .table import make_json, save_files
 
 DOCUMENT = "run.json"
-_LARGEST = 10**8  # bytes of run.json
+_LARGEST = 10**8  # maximum size of run.json, bytes
 
 
 class WrittenFlight(NamedTuple):
-    """A flight of an output folder.
+    """A flight in an output folder.
 
     Attributes
     ----------
     name : str
         Name on pages.
     log : str
-        File of the log, relative to the folder.
+        Path of the log, relative to the folder.
     model, world : Model, World
         Vehicle and world that were simulated.
     events : sequence of (float, str)
         Times (s) and descriptions of events.
     speed_limit : float
-        Maximum rotor joint speed, rad/s; infinite without one.
+        Maximum speed of the rotor joints, rad/s; infinite without a limit.
     style : int, optional
-        Number of the colour, as for `PlayerFlight`.
+        Index of the colour, as for `PlayerFlight`.
     """
 
     name: str
@@ -55,7 +55,7 @@ class WrittenFlight(NamedTuple):
 
 
 class ListedFlight(NamedTuple):
-    """A flight that ``run.json`` lists; attributes as for `WrittenFlight`."""
+    """A flight listed in ``run.json``; attributes as for `WrittenFlight`."""
 
     name: str
     log: Path
@@ -68,19 +68,19 @@ class ListedFlight(NamedTuple):
     style: Optional[int]
 
     def read_vehicle(self) -> Optional[DrawnVehicle]:
-        """Read the shapes of the vehicle; return None if its model file was removed."""
+        """Read the shapes of the vehicle; return None if the model file does not exist."""
         if not is_file(self.model):
             return None
         return read_vehicle(read_model(self.model, ignore=self.ignore))
 
 
 def name_log(number: int) -> str:
-    """Return the file of the log of a flight, from 1 on."""
+    """Return the relative path of a flight's log; numbers start at 1."""
     return f"logs/{number}.csv"
 
 
 def write_logs(folder: Path, logs: Sequence[Log]) -> None:
-    """Write logs under the names of `name_log`."""
+    """Write logs to the paths of `name_log`."""
     if logs:
         make_folder(folder / "logs")
     for number, log in enumerate(logs, start=1):
@@ -93,7 +93,7 @@ def write_flights(
     settings: Optional[Mapping[str, Any]] = None,
     model_file: str = "",
 ) -> List[Path]:
-    """Write ``run.json`` and each model once; the logs exist or follow.
+    """Write ``run.json``, and each model once; the caller writes the logs.
 
     Parameters
     ----------
@@ -102,14 +102,14 @@ def write_flights(
     flights
         Flights to list.
     settings
-        Further entries of ``run.json``.
+        Additional entries of ``run.json``.
     model_file
-        File of the model; default: ``models/N.urdf``.
+        Path of the model file (default: ``models/N.urdf``).
 
     Returns
     -------
     list of Path
-        ``run.json``.
+        Path of ``run.json``.
 
     Raises
     ------
@@ -152,13 +152,13 @@ def write_flights(
 
 
 def remove_flights(folder: Path) -> None:
-    """Remove the logs and models that ``run.json`` of an earlier study lists."""
+    """Remove the logs and models listed in the ``run.json`` of an earlier study."""
     is_ours = re.compile(r"(logs|models)/[0-9]+\.(csv|urdf)").fullmatch
     remove_listed_files(folder, DOCUMENT, "files", is_ours)
 
 
 def list_flights(folder: Path) -> List[ListedFlight]:
-    """List the flights of a folder; none without ``run.json``.
+    """List the flights of a folder; empty without ``run.json``.
 
     Raises
     ------

@@ -31,43 +31,43 @@ ENGINES = ("eigen", "gazebo11")
 """Engines with batches that step several vehicles per instruction."""
 
 MOST = 64
-"""Maximum number of flights of a group; their logs are in memory together."""
+"""Maximum number of flights in a group, because their logs are in memory together."""
 
 MOST_VECTORIZED = 256
-"""The same for vectorized controllers. Their cost per call depends little on the number."""
+"""Maximum for vectorized controllers; the cost of a call hardly depends on the number."""
 
 
 class FlightRecord(NamedTuple):
-    """Result of a flight with a controller, from which any process computes the metrics."""
+    """Result of a flight with a controller; any process can compute the metrics from it."""
 
     log: Log
     failure: str
-    """Reason of a failure; "" for success."""
+    """Reason for the failure; "" for success."""
     calls: int
-    """Number of calls of the controller."""
+    """Number of controller calls."""
     saturated: float
-    """Those with a command that the rotors could not follow; NaN if unknown."""
+    """Number of calls with a command that the rotors could not follow; NaN if unknown."""
     variation: Optional[Tuple[np.ndarray, np.ndarray]]
     """As in `ControllerPilot.variation`."""
     seconds: np.ndarray
-    """Duration of some of the calls, s."""
+    """Durations of the timed calls, s."""
     warnings: Sequence[str]
     """Warnings, as in `Simulation.warnings`."""
     rate: float
     """Update rate of the controller, 1/s."""
     delay: float
-    """Delay from the controller to the motors, s."""
+    """Actuation delay, s."""
     is_vectorized: bool
     """Whether the controller commands several vehicles at once."""
     rotors: Sequence[RotorData]
     limit: float
-    """Limit of the joint speeds, rad/s."""
+    """Maximum speed of the rotor joints, rad/s."""
     model: Model
     world: World
     elapsed: float = 0.0
     """Wall-clock duration, s."""
     command_topic: str = ""
-    """Topic of the commands, if the log contains it."""
+    """Topic of the commands; "" if the log does not contain it."""
     flat_states: Optional[np.ndarray] = None
     """Result of `sample_flat_states` at the times of the log."""
     estimate_errors: Optional[np.ndarray] = None
@@ -85,7 +85,7 @@ def make_record(
     Parameters
     ----------
     pilot, rotors, plan
-        Those of a flight of the same vehicle.
+        Pilot, rotors and plan of the flight or of an equal flight.
     **results
         Other fields of the record.
     """
@@ -105,7 +105,7 @@ def make_record(
 def fly_group(
     described: Sequence[Callable[[], FlightPlan]], limit: float, needs_flat_states: bool = False
 ) -> Optional[List[FlightRecord]]:
-    """Simulate flights on one batch, bit-identical to single flights.
+    """Simulate flights on one batch, bit-identical to separate flights.
 
     Parameters
     ----------
@@ -114,13 +114,13 @@ def fly_group(
     limit
         Wall-clock limit of each flight, s.
     needs_flat_states
-        Whether the records have `flat_states`.
+        Whether the records contain `flat_states`.
 
     Returns
     -------
     list of FlightRecord, or None
-        Outcomes; None if the flights cannot share a batch, or one of them has an error, which
-        single flights show.
+        Results. None if the flights cannot share a batch, or one of them raises an error; separate
+        flights then report the error.
     """
     started = time.perf_counter()
     try:
@@ -143,13 +143,13 @@ def fly_group(
 
 
 def share_out(rows: Sequence[int], processes: int) -> List[Sequence[int]]:
-    """Split rows into groups: few enough to balance the load of the processes."""
+    """Split rows into groups small enough to balance the load of the processes."""
     least = 4 * processes
     return split(rows, max(1, min(MOST, len(rows) // least)))
 
 
 def split(rows: Sequence[int], size: int) -> List[Sequence[int]]:
-    """Split rows into groups of a size."""
+    """Split rows into groups of this size; the last group may be smaller."""
     return [rows[i : i + size] for i in range(0, len(rows), size)]
 
 
@@ -183,7 +183,7 @@ def _differ_in_seed(plans: Sequence[FlightPlan]) -> bool:
     first = plans[0]
     return all(
         is_vectorized(plan.controller)
-        and not list_names(plan.controller)  # their values are those of one vehicle
+        and not list_names(plan.controller)  # user parameters apply to one vehicle
         and plan.model is first.model
         and plan.parameters == first.parameters
         and plan.spawn == first.spawn
@@ -193,7 +193,7 @@ def _differ_in_seed(plans: Sequence[FlightPlan]) -> bool:
 
 
 class _Kind:
-    """Flights that differ only in the seed."""
+    """Flights that differ only in their seed."""
 
     def __init__(self, plan: FlightPlan) -> None:
         self.placed: List[State] = []
@@ -208,12 +208,12 @@ class _Kind:
         self.plan, self.pilot = plan, pilot
         self.logs = GuidedLogs(simulation, pilot)
         self.dt = simulation.dt
-        self.simulation = simulation  # the controller refers to it
+        self.simulation = simulation  # keeps the simulation alive, because the controller uses it
         self.rotors = simulation.rotors
         self._flat_states: Optional[np.ndarray] = None
 
     def sample_flat_states(self, times: np.ndarray) -> Optional[np.ndarray]:
-        """Return the result of `sample_flat_states`; all flights have rows at the same times."""
+        """Return the flat states at these times; all flights have rows at the same times."""
         known = self._flat_states
         if known is None or len(known) < len(times):
             known = self._flat_states = sample_flat_states(self.simulation, self.plan, times)
@@ -221,7 +221,7 @@ class _Kind:
 
 
 def _make_row(state: State) -> np.ndarray:
-    """Return a state as a row of `BatchSimulation.read_state`."""
+    """Convert a state to a row of `BatchSimulation.read_state`."""
     return np.concatenate(
         [
             state.position,
@@ -235,7 +235,7 @@ def _make_row(state: State) -> np.ndarray:
 
 
 def _identify(plan: FlightPlan) -> Any:
-    """Return what flights that differ only in the seed have in common."""
+    """Return a key that is equal for flights that differ only in their seed."""
     controller = plan.controller
     return (
         type(plan),
@@ -249,7 +249,7 @@ def _identify(plan: FlightPlan) -> Any:
 
 
 def _make_batch(plans: Sequence[FlightPlan], kinds: Sequence[_Kind]) -> _core.Batch:
-    """Make the batch of plans at their start."""
+    """Make a batch with each plan in its initial state."""
     first = plans[0]
     batch = _core.Batch(
         [kind.plan.model for kind in kinds],

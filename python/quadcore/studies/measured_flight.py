@@ -36,11 +36,11 @@ class Outcome(NamedTuple):
     """Outcome of a flight."""
 
     failure: str = NOT_FLOWN
-    """Reason of a failure; "" for success."""
+    """Reason for the failure; "" for success."""
     measures: Dict[str, float] = NAN
-    """Metrics in `UNITS`; NaN after a failure."""
+    """Values of the metrics; NaN after a failure."""
     seconds: float = float("nan")
-    """Wall-clock duration."""
+    """Wall-clock duration, s."""
     updates: int = 0
     """Number of controller updates."""
     call: float = float("nan")
@@ -50,21 +50,21 @@ class Outcome(NamedTuple):
     rate: float = float("nan")
     """Update rate of the controller, 1/s."""
     delay: float = float("nan")
-    """Delay from the controller to the motors, s."""
+    """Actuation delay, s."""
     warnings: Sequence[str] = ()
     """Warnings, as in `Simulation.warnings`."""
     log: Optional[Log] = None
-    """Decimated log, if kept."""
+    """Decimated log; None unless kept."""
     response: Optional[np.ndarray] = None
-    """Result of `step_response`, if kept."""
+    """Result of `step_response`; None unless kept."""
     spectra: Optional[Spectra] = None
-    """Power spectral densities, if the log contains the commands."""
+    """Power spectral densities; None unless the log contains the commands."""
     limit: float = float("inf")
-    """Limit of the joint speeds, rad/s."""
+    """Maximum speed of the rotor joints, rad/s."""
     vehicle: Optional[DrawnVehicle] = None
-    """Shapes of the vehicle, if kept."""
+    """Shapes of the vehicle; None unless kept."""
     motion: Optional[np.ndarray] = None
-    """Velocity (m/s) and angular velocity (rad/s) of a decimated log, if watched; (rows, 6)."""
+    """Velocity (m/s) and angular velocity (rad/s), decimated, shape (rows, 6); None unless kept."""
     is_vectorized: bool = False
     """Whether the controller commands several vehicles at once."""
     refused: bool = False
@@ -88,7 +88,7 @@ def fly_and_measure(
     timed: bool = True,
     watch: bool = False,
 ) -> Outcome:
-    """Simulate a flight and compute its metrics; arguments of `fly_alone` and `measure_record`."""
+    """Simulate a flight, and compute its metrics; see `fly_alone` and `measure_record`."""
     return measure_record(fly_alone(described, most, keep, timed), keep=keep, watch=watch)
 
 
@@ -105,7 +105,7 @@ def fly_alone(
     Parameters
     ----------
     described
-        Returns the plan; the time limit includes making the controller.
+        Function that returns the plan; the time limit includes this call.
     most
         Wall-clock limit, s.
     keep
@@ -113,9 +113,9 @@ def fly_alone(
     timed
         Whether to time each update of the controller, which slows the flight.
     criteria
-        Metrics that the record is for.
+        Criteria that determine which data are recorded.
     logs_commands
-        Whether to log the commands, for spectra.
+        Whether to log the commands, which spectra require.
 
     Raises
     ------
@@ -174,18 +174,18 @@ def measure_record(
     keep: bool = False,
     watch: bool = False,
 ) -> Outcome:
-    """Compute the metrics of a flight, perhaps in another process than that of its controller.
+    """Compute the metrics of a flight; another process may have simulated it.
 
     Parameters
     ----------
     flight
         Result of `fly_alone` or `fly_group`.
     criteria
-        Limit of a failure, constraints and metrics.
+        Failure limit, constraints and metrics.
     keep
-        Whether to keep a decimated log.
+        Whether to keep the data for plots and animations, such as the decimated log.
     watch
-        Whether to keep the motion.
+        Whether to keep the decimated velocities.
     """
     log = flight.log
     failure = describe_failure(log, criteria.failure_distance) or flight.failure
@@ -234,7 +234,7 @@ def measure_record(
 def fly_together(
     described: Sequence[Callable[[], FlightPlan]], most: float, criteria: Criteria = DEFAULT
 ) -> Optional[List[Outcome]]:
-    """Simulate flights on one batch and compute their metrics, bit-identical to single flights.
+    """Simulate flights on one batch, bit-identical to separate flights, and measure them.
 
     Parameters
     ----------
@@ -248,8 +248,8 @@ def fly_together(
     Returns
     -------
     list of Outcome, or None
-        Outcomes; None if only single flights are possible. The durations of the controller are
-        those of every sixteenth update.
+        Outcomes; None if the flights cannot share a batch. Only every 16th update of the
+        controllers is timed.
     """
     flights = fly_group(described, most, criteria.needs_flat_states)
     return None if flights is None else [measure_record(flight, criteria) for flight in flights]

@@ -1,4 +1,4 @@
-"""Descriptions of the options of studies, in the metadata of the fields of a dataclass."""
+"""Descriptions of the options of studies, as metadata of dataclass fields."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ VEHICLE, FLIGHT, CONTROLLER, STUDY, OUTPUT = GROUPS = (
     "study",
     "output",
 )
-"""Headings under which `--help` lists options, in this order."""
+"""Headings of the options in `--help`, in this order."""
 
 
 class OptionInfo(NamedTuple):
-    """How an option is written, read, checked and explained."""
+    """Name, format, check and explanation of an option."""
 
     group: str
     """One of `GROUPS`."""
     flag: str
-    """Name on the command line; "" for an option of the Python functions only."""
+    """Name on the command line; "" if only the Python functions accept the option."""
     metavar: str
     meaning: str
     read: Callable[[str], Any]
-    """Reads the text of the command line."""
+    """Parses the text from the command line."""
     kind: Kind
     without: str
-    """Default in words, "" if the default value is clear."""
+    """Default in words; "" if the default value is self-explanatory."""
     repeats: bool
 
 
@@ -45,22 +45,22 @@ def describe_option(
     without: str = "",
     repeats: bool = False,
 ) -> Dict[str, OptionInfo]:
-    """Return the metadata of a field with the description of its option."""
+    """Return the metadata of a field that describe its option."""
     return {"about": OptionInfo(group, flag, metavar, meaning, read, kind, without, repeats)}
 
 
 def describe_options(kind: Any) -> Dict[str, OptionInfo]:
-    """Return the description of each option, by name."""
+    """Return the description of each option by name."""
     return {each.name: each.metadata["about"] for each in fields(kind)}
 
 
 def list_kinds(kind: Any) -> Dict[str, Kind]:
-    """Give the kind of each option's value, by name."""
+    """Return the kind of each option's value by name."""
     return {name: about.kind for name, about in describe_options(kind).items()}
 
 
 def explain(about: OptionInfo, default: Any) -> str:
-    """Write the meaning and the default of an option in one line."""
+    """Return the meaning and the default of an option in one line."""
     plain = f"{default:g}" if isinstance(default, float) else str(default)
     without = about.without or ("" if default in (None, ()) else plain)
     return f"{about.meaning} (default: {without})" if without else about.meaning

@@ -1,7 +1,7 @@
 """The options that all studies share.
 
-Each option is defined here once. The Python functions take it as a keyword argument, the commands
-as ``--FLAG``, and files of options as ``FLAG: VALUE``. Help texts and docstrings are made from it.
+Each option is defined only here. Python functions take it as a keyword argument, commands as
+``--FLAG``, and option files as ``FLAG: VALUE``. Help texts and docstrings are generated from it.
 """
 
 from __future__ import annotations
@@ -45,17 +45,17 @@ Names = Union[str, Path, Sequence[Union[str, Path]]]
 Progress = Callable[[int, int], None]
 
 SPAWNED = "{:g},{:g},{:g}".format(*SPAWN)
-"""Default start position, as --spawn takes it."""
+"""Default start pose, in the format of ``--spawn``."""
 
 
 @dataclass(frozen=True)
 class Options:
-    """Options of every study, checked one by one.
+    """Options of every study; each value is checked by itself.
 
     Raises
     ------
     InputError
-        If a value is of another kind than its option's.
+        If the kind of a value is wrong.
     """
 
     parameters: Optional[Mapping[str, Value]] = field(default=None, metadata=describe_option(
@@ -149,7 +149,7 @@ class Options:
 
 
 class Keywords(TypedDict, total=False):
-    """`Options` as keyword arguments, for type checkers; a test compares the two."""
+    """`Options` as keyword arguments for type checkers; a test compares both."""
 
     parameters: Optional[Mapping[str, Value]]
     xacro_args: Optional[Mapping[str, object]]
@@ -172,7 +172,7 @@ class Keywords(TypedDict, total=False):
 
 
 def change_option(name: str, **parts: Any) -> Dict[str, OptionInfo]:
-    """Describe an option again with some parts replaced."""
+    """Describe an option again, with some parts replaced."""
     return {"about": describe_options(Options)[name]._replace(**parts)}
 
 
@@ -193,7 +193,7 @@ class ControlOptions(Options):
 
 
 class ControlKeywords(Keywords, total=False):
-    """`ControlOptions` as keyword arguments, for type checkers."""
+    """`ControlOptions` as keyword arguments for type checkers."""
 
     privileged: bool
     failure_distance: float
@@ -218,12 +218,12 @@ class CriteriaOptions(ControlOptions):
     ))  # fmt: skip
 
     def make_criteria(self) -> Criteria:
-        """Return the criteria; raises `InputError` if one does not exist."""
+        """Return the criteria; raise `InputError` if a constraint or metric is invalid."""
         return Criteria.make(self.failure_distance, self.constraints, self.metrics)
 
 
 class CriteriaKeywords(ControlKeywords, total=False):
-    """`CriteriaOptions` as keyword arguments, for type checkers."""
+    """`CriteriaOptions` as keyword arguments for type checkers."""
 
     constraints: Optional[Mapping[str, Any]]
     metrics: Sequence[Metric]
@@ -253,7 +253,7 @@ class EvaluateOptions(CriteriaOptions):
 
 
 class EvaluateKeywords(CriteriaKeywords, total=False):
-    """`EvaluateOptions` as keyword arguments, for type checkers."""
+    """`EvaluateOptions` as keyword arguments for type checkers."""
 
     computation_time: Union[float, str, None]
     spectra: bool

@@ -1,4 +1,4 @@
-"""Output folder of a study: exclusive access, and removal of the study's own files only."""
+"""Output folder of a study: exclusive access, and removal of files of earlier studies."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from ..support.output_files import make_write_error, prepare_folder
 from .table import make_json, save_files
 
 _LOCK = ".quadcore.lock"
-_PATIENCE = 10.0  # s; a study that was just killed may still hold the lock
-_LARGEST = 10**9  # bytes of a document
+_PATIENCE = 10.0  # s; a study that has just been killed may still hold the lock
+_LARGEST = 10**9  # maximum size of a document, bytes
 
-_held: Set[str] = set()  # folders locked by threads of this process
+_held: Set[str] = set()  # folders that threads of this process have locked
 _held_lock = threading.Lock()
 
 
@@ -30,23 +30,23 @@ _held_lock = threading.Lock()
 def output_folder(
     folder: Optional[Path], names: Sequence[str] = (), document: str = ""
 ) -> Iterator[None]:
-    """Make a folder, and lock it until the end of the block.
+    """Make a folder, and lock it during the block.
 
     Parameters
     ----------
     folder
-        Folder; None: no output.
+        Folder. None: no output.
     names
-        Files that must be writable.
+        Names of files that must be writable.
     document
-        File that only the same kind of study writes. If the folder contains others of these
-        files but not this one, they are not overwritten. "": no check.
+        File that only this kind of study writes. If the folder lacks this file but contains one of
+        `names`, the function raises instead of overwriting. "": no check.
 
     Raises
     ------
     InputError
-        The folder cannot be made, a file cannot be written or is somebody else's, or another study
-        writes there.
+        If the folder cannot be made, a file is not writable or was written by something else, or
+        another study is writing to the folder.
     """
     if folder is None:
         yield
@@ -88,7 +88,7 @@ def _lock(folder: Path) -> int:
             raise make_write_error(path, error) from error
         with contextlib.suppress(OSError):
             fcntl.lockf(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if os.path.samestat(os.fstat(number), os.stat(path)):  # else its owner removed it
+            if os.path.samestat(os.fstat(number), os.stat(path)):  # otherwise its owner removed it
                 return number
         os.close(number)
         if time.monotonic() > end:
@@ -110,11 +110,11 @@ def remove_listed_files(
     folder
         Folder of the files and the document.
     document
-        Name of the JSON document; a missing or damaged one lists nothing.
+        Name of the JSON document. A missing or damaged document lists nothing.
     key
-        Key of the list of file names.
+        Key of the list of file names in the document.
     is_ours
-        Whether a study writes files with a name.
+        Function that returns whether a study writes files with this name.
     """
     try:
         listed = json.loads(read_bytes(folder / document, _LARGEST)).get(key, [])
@@ -127,7 +127,7 @@ def remove_listed_files(
 
 
 def remove_plots(folder: Path, document: str, is_plot: Callable[[str], bool]) -> None:
-    """Remove the plots of an earlier study; `is_plot` receives a name without suffix."""
+    """Remove the plots of an earlier study; `is_plot` is called with a name without suffix."""
 
     def is_ours(name: str) -> bool:
         stem, _, kind = name.rpartition(".")
@@ -139,7 +139,7 @@ def remove_plots(folder: Path, document: str, is_plot: Callable[[str], bool]) ->
 def save_plots(
     folder: Path, document: str, content: Mapping[str, Any], images: Mapping[str, Drawing]
 ) -> List[Path]:
-    """Write plots, by name without suffix, and list them in a document with this content."""
+    """Write plots, given by name without suffix, and list them in a document with this content."""
     pictures = [file for name, drawing in images.items() for file in name_files(name, drawing)]
     save_files(folder, {document: make_json({**content, "pictures": pictures})})
     return save_drawings(folder, images)

@@ -8,9 +8,9 @@ import numpy as np
 
 
 def rank_values(values: Union[np.ndarray, Sequence[float]]) -> np.ndarray:
-    """Return the rank of each value, from 1; equal values have their mean rank.
+    """Return the rank of each value, starting at 1; equal values share their mean rank.
 
-    The function of scipy.stats does the same, but takes most of a second to import.
+    `scipy.stats.rankdata` does the same, but its import takes most of a second.
 
     Parameters
     ----------

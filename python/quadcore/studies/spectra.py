@@ -8,23 +8,23 @@ import numpy as np
 
 from ..simulation.log import Log
 
-_SEGMENT = 4.0  # s; the resolution is the reciprocal
-_FEWEST = 16  # rows
+_SEGMENT = 4.0  # s; length of a segment, the reciprocal of the resolution
+_FEWEST = 16  # minimum number of rows
 
 
 class Spectra(NamedTuple):
     """One-sided power spectral densities; their integral over the frequency is the variance."""
 
     frequencies: np.ndarray
-    """Hz, from 0 to half the rate of the rows; (n,)."""
+    """Frequencies from 0 to half the rate of the rows, Hz; shape (n,)."""
     rates: np.ndarray
-    """Sum over the components of the angular velocity, (rad/s)^2/Hz; (n,)."""
+    """Sum over the components of the angular velocity, (rad/s)^2/Hz; shape (n,)."""
     commands: np.ndarray
-    """Mean over the rotors of the commanded speed, (rad/s)^2/Hz; (n,)."""
+    """Mean over the commanded rotor speeds, (rad/s)^2/Hz; shape (n,)."""
 
 
 def compute_spectra(log: Log, commands: str) -> Optional[Spectra]:
-    """Compute the densities by Welch's method: Hann windows of 4 s with half overlap.
+    """Compute the densities by Welch's method, with Hann windows of 4 s and 50 % overlap.
 
     Reference: P. D. Welch, The use of fast Fourier transform for the estimation of power spectra,
     IEEE Transactions on Audio and Electroacoustics 15 (1967), 70-73.
@@ -34,7 +34,7 @@ def compute_spectra(log: Log, commands: str) -> Optional[Spectra]:
     log
         Evenly spaced log.
     commands
-        Topic of the commands in the log.
+        Name of the command topic.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Numerical error of the plant: the change of a flight if the step is halved."""
+"""Numerical error of the plant: the change of a flight with half the step."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from .executor import call_apart
 from .time_limit import time_limit
 from .tracking_metrics import EQUAL
 
-_LONGEST = 10.0  # s
+_LONGEST = 10.0  # s; maximum duration of the compared part
 _SUBSTITUTE = "geometric"
-"""Built-in controller that replaces user-defined ones, since the error is that of the plant."""
+"""Built-in controller that replaces user-defined ones; the error is that of the plant only."""
 
 
 class StepError(NamedTuple):
-    """Change of a flight if its step is halved."""
+    """Change of a flight when its step is halved."""
 
     flight: str
-    """Name of the flight, with its conditions."""
+    """Description of the flight and its conditions."""
     step: float
     """Step of the study, s."""
     duration: float
-    """Compared part of the flight, s."""
+    """Duration of the compared part of the flight, s."""
     position: Optional[float]
-    """Maximum change of the position, m; None if the flight is random, fails, or is too slow."""
+    """Maximum change of position, m; None if the flight is random, fails or exceeds the limit."""
 
     def describe(self) -> str:
         """Describe the error in one line."""
@@ -51,24 +51,24 @@ class StepError(NamedTuple):
 
 
 def compute_step_error(name: str, flight: FlightPlan, limit: float) -> Optional[StepError]:
-    """Repeat the start of a flight at half the step.
+    """Repeat the start of a flight with half the step.
 
-    The flights run in a process of their own. The built-in controller `geometric` replaces a
-    user-defined one.
+    The flights run in a separate process. The built-in controller `geometric` replaces a
+    user-defined controller.
 
     Parameters
     ----------
     name
-        Name of the flight.
+        Description of the flight.
     flight
-        Flight at the step of the study, open loop or with a reference.
+        Flight with the step of the study, either open loop or with a reference.
     limit
         Wall-clock limit of each flight, s.
 
     Returns
     -------
     StepError or None
-        Error; None in an engine without plugins.
+        Numerical error; None for an engine without plugins.
     """
     if not exerts_wrenches(flight.engine):
         return None
@@ -78,13 +78,13 @@ def compute_step_error(name: str, flight: FlightPlan, limit: float) -> Optional[
     short = replace(flight, duration=min(_LONGEST, flight.duration))
     try:
         change = call_apart(partial(_compare, short, limit))
-    except QuadcoreError:  # of a user-defined reference too
+    except QuadcoreError:  # includes errors of a user-defined reference
         change = None
     return StepError(name, short.step, short.duration, change)
 
 
 def _compare(flight: FlightPlan, limit: float) -> Optional[float]:
-    """Return the maximum change of the position, m; None for a random flight."""
+    """Return the maximum change of position, m; None for a random flight."""
     half = replace(flight, dt=flight.step / 2, log_every=2 * flight.log_every)
     other_seed = replace(flight, seed=flight.seed + 1)
 

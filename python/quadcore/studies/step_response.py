@@ -1,12 +1,13 @@
 """Estimate of the step response of a closed loop from a flight.
 
-As in PX4's Flight Review, the motion along one axis is modelled as the motion of the reference,
-filtered by an impulse response; its sum is the step response. Least squares over the whole flight,
-with a small ridge, give the impulse response without the bias of a window.
+As in the Flight Review of PX4, the motion along one axis is modelled as the motion of the
+reference, filtered by an impulse response. The cumulative sum of the impulse response is the step
+response. Least squares with a small ridge over the whole flight give the impulse response without
+the bias of a window.
 
-A reference that jumps does so at the row that first shows it, and excites all frequencies. It is
-sampled at the rate of the log. Otherwise the reference changes evenly between coarser samples, and
-the sum up to sample k is the step response half a sample later.
+A reference with jumps changes exactly at a row and excites all frequencies, so it is sampled at the
+rate of the log. Any other reference is sampled more coarsely and changes evenly between samples.
+The sum up to sample k is then the step response half a sample later.
 """
 
 from __future__ import annotations
@@ -18,18 +19,18 @@ import numpy as np
 from ..simulation.log import Log
 
 SPAN = 4.0
-"""Length of the response, s."""
+"""Duration of the response, s."""
 
 _RATE = 20.0  # 1/s; sampling rate of smooth references
-_JUMP_RATE = 100.0  # 1/s; at most, sampling rate of references with jumps
-_SUDDEN = 0.5  # relative change of the motion between rows: a jump
-_BAND = 0.5  # Hz; the reference must excite frequencies below
-_QUIET = 1e-4  # relative to the peak of the spectrum: no excitation
+_JUMP_RATE = 100.0  # 1/s; maximum sampling rate of references with jumps
+_SUDDEN = 0.5  # relative change of the motion between rows that counts as a jump
+_BAND = 0.5  # Hz; the reference must excite lower frequencies
+_QUIET = 1e-4  # power relative to the peak of the spectrum below which there is no excitation
 _RIDGE = 1e-6  # relative to the mean square of the input
 
 
 def step_response(log: Log) -> Optional[np.ndarray]:
-    """Estimate the response along the axis of maximum motion of the reference.
+    """Estimate the response along the axis with the maximum motion of the reference.
 
     Returns
     -------
@@ -49,7 +50,7 @@ def step_response(log: Log) -> Optional[np.ndarray]:
     given, answer = (np.diff(np.interp(time, log.time, side)) for side in sides)
     if not _excites(given, rate):
         return None
-    # Before the flight, the reference is assumed to rest, or to move as at its start.
+    # Before the flight, the reference is assumed to rest (with jumps) or to move as at the start.
     padded = np.concatenate([np.full(taps - 1, 0.0 if jumps else given[0]), given])
     rows = np.lib.stride_tricks.as_strided(
         padded[taps - 1 :],
@@ -66,13 +67,13 @@ def step_response(log: Log) -> Optional[np.ndarray]:
 
 
 def _has_jumps(changes: np.ndarray) -> bool:
-    """Whether the changes of a reference from row to row vary by as much as their size."""
+    """Whether the change between rows varies strongly relative to the maximum change."""
     largest = np.abs(changes).max(initial=0.0)
     return bool(np.abs(np.diff(changes)).max(initial=0.0) > _SUDDEN * largest)
 
 
 def _excites(given: np.ndarray, rate: float) -> bool:
-    """Whether a motion excites all frequencies of the band."""
+    """Whether a motion excites all frequencies in the band."""
     if not np.any(given):
         return False
     power = np.abs(np.fft.rfft((given - given.mean()) * np.hanning(len(given)))) ** 2

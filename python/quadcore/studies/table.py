@@ -13,7 +13,7 @@ from ..support.output_files import atomic_write, encode_text, escape_cell
 
 
 def make_csv(rows: Iterable[Sequence[Any]]) -> bytes:
-    """Write rows as CSV; NaN is an empty cell."""
+    """Convert rows to CSV; NaN becomes an empty cell."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     for row in rows:
@@ -22,27 +22,27 @@ def make_csv(rows: Iterable[Sequence[Any]]) -> bytes:
 
 
 def make_json(content: Any) -> bytes:
-    """Write lists and dictionaries as JSON; NaN is null."""
+    """Convert lists and dictionaries to JSON; NaN becomes null."""
     text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
     return encode_text(text + "\n")
 
 
 def format_number(value: float) -> str:
-    """Format a number with four digits; NaN is empty."""
+    """Format a number with four significant digits; NaN becomes ""."""
     return "" if math.isnan(value) else f"{value:.4g}"
 
 
 def choose_display_unit(unit: str) -> Tuple[str, float]:
-    """Return the unit for display and the factor to it: degrees instead of radians."""
+    """Return the display unit and the conversion factor; only radians change, to degrees."""
     return ("deg", 180 / math.pi) if unit == "rad" else (unit, 1.0)
 
 
 NOT_FLOWN = "not flown: interrupted"
-"""Failure text of flights that did not run because of an interrupt."""
+"""Failure of flights that did not run because of an interrupt."""
 
 
 def count_outcomes(failures: Sequence[str]) -> str:
-    """Count successful, failed and missing flights in one line."""
+    """Return the numbers of successful, failed and missing flights in one line."""
     left_out = sum(1 for failure in failures if failure == NOT_FLOWN)
     failed = sum(1 for failure in failures if failure) - left_out
     flown = len(failures) - failed - left_out
@@ -51,7 +51,7 @@ def count_outcomes(failures: Sequence[str]) -> str:
 
 
 def save_files(folder: Path, files: Mapping[str, bytes]) -> List[Path]:
-    """Write files into a folder, each atomically, and return their paths.
+    """Write each file atomically into a folder, and return the paths.
 
     Raises
     ------
@@ -72,16 +72,16 @@ def _plain(content: Any) -> Any:
     return None if content != content else content
 
 
-_NAMED = 4  # names of a kind in one line
+_NAMED = 4  # maximum number of names of a kind in a line
 
 
 def describe_conditions(settings: Mapping[str, Any]) -> str:
-    """Describe the conditions of a study's flights in one line, for the head of its page.
+    """Describe the conditions of the flights of a study in one line, for the head of its page.
 
     Parameters
     ----------
     settings
-        Settings of all flights; those that have no name here are left out.
+        Settings of all flights. Only known settings are described.
     """
     parts = []
     for kinds in ("models", "engines", "controllers", "references", "scenarios"):
@@ -100,7 +100,7 @@ def describe_conditions(settings: Mapping[str, Any]) -> str:
 
 
 def format_settings(setting: Mapping[str, Any], most: Optional[int] = None) -> Dict[str, str]:
-    """Format settings for a page: at most `most` entries of a list, no empty values."""
+    """Format settings for a page, without empty values; a list shows at most `most` entries."""
     found = {}
     for name, value in setting.items():
         if isinstance(value, Mapping):

@@ -12,24 +12,24 @@ from typing import IO, Any, Iterator, List, Optional
 
 from .._core import FlightError
 
-_AGAIN = 0.5  # s; the exception is raised again if user code catches it
-_PATIENCE = 5.0  # s; after that the process ends, as it does not run Python
+_AGAIN = 0.5  # s; the exception is raised again at this interval, in case user code catches it
+_PATIENCE = 5.0  # s; then the process is ended, because it does not run Python code
 
 _report: Optional[IO[bytes]] = None
 
 
 class _TimeIsUp(KeyboardInterrupt):
-    """Raised at the limit; not an Exception, so that user code does not catch it by accident."""
+    """Exception at the limit; not an Exception subclass, so that user code does not catch it."""
 
 
 def report_to(stream: IO[bytes]) -> None:
-    """Set the file by which another process learns that a limit has ended this one."""
+    """Set the file through which another process detects that a limit has ended this process."""
     global _report
     _report = stream
 
 
 def read_report(stream: IO[bytes]) -> str:
-    """Read the message of the time limit that ended a process; "" if none did."""
+    """Read the message of the time limit that ended a process; "" without a message."""
     stream.seek(0)
     limit, _, traceback = stream.read().decode(errors="replace").partition("\n")
     return _describe(float(limit)) if traceback else ""
@@ -46,13 +46,14 @@ def time_limit(seconds: float) -> Iterator[None]:
     Parameters
     ----------
     seconds : float
-        Wall-clock limit.
+        Wall-clock limit, s.
 
     Raises
     ------
     FlightError
-        If the limit is exceeded. If the block does not run Python, a child process ends instead; in
-        a thread other than the main thread, the block is waited for.
+        If the limit is exceeded. If the block does not run Python code, a child process is ended
+        instead. In any thread but the main thread, the error then waits until the block runs Python
+        code again.
     """
     is_main = threading.current_thread() is threading.main_thread()
     expired: List[bool] = []
@@ -61,7 +62,7 @@ def time_limit(seconds: float) -> Iterator[None]:
             yield
         except _TimeIsUp:
             pass
-        except Exception:  # an engine may have converted it
+        except Exception:  # an engine may have converted the exception
             if not expired:
                 raise
     if expired:
@@ -70,7 +71,7 @@ def time_limit(seconds: float) -> Iterator[None]:
 
 @contextmanager
 def _alarm(seconds: float, expired: List[bool]) -> Iterator[None]:
-    """Raise `_TimeIsUp` in the main thread, and end a process that does not react."""
+    """Raise `_TimeIsUp` in the main thread, and end a process that does not respond."""
 
     def end(number: int, frame: Any) -> None:
         expired.append(True)
@@ -96,7 +97,7 @@ def _alarm(seconds: float, expired: List[bool]) -> Iterator[None]:
 
 @contextmanager
 def _watch(seconds: float, expired: List[bool]) -> Iterator[None]:
-    """Raise `_TimeIsUp` in this thread, which does not receive signals."""
+    """Raise `_TimeIsUp` in this thread, which receives no signals."""
     raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
     thread = ctypes.c_ulong(threading.get_ident())
     over, turn = threading.Event(), threading.Lock()

@@ -33,20 +33,21 @@ METRICS = {
         ),
     },
 }
-"""Unit and meaning of each value, by metric."""
+"""For each metric, the unit and meaning of its values."""
 
 
 def sample_flat_states(
     simulation: Any, plan: FlightPlan, times: np.ndarray
 ) -> Optional[np.ndarray]:
-    """Return attitude and angular velocity of a vehicle that follows the reference exactly.
+    """Return the attitude and angular velocity of a vehicle that follows the reference exactly.
 
-    They follow from the flatness of the vehicle with drag (Faessler, Franchi, Scaramuzza 2018).
+    They follow from the differential flatness of a vehicle with rotor drag (Faessler, Franchi,
+    Scaramuzza 2018).
 
     Parameters
     ----------
     simulation : Simulation
-        Simulation of the vehicle at its start.
+        Simulation of the vehicle in its initial state.
     plan : FlightPlan
         Plan with the reference and the controller.
     times : ndarray (rows,)
@@ -55,8 +56,8 @@ def sample_flat_states(
     Returns
     -------
     ndarray (rows, 7) or None
-        Unit quaternion x, y, z, w of the frame in the world, then the angular velocity in its axes,
-        rad/s. None if the reference has no derivatives, or the vehicle no flat state.
+        Unit quaternion x, y, z, w of the frame in the world, and angular velocity in body axes,
+        rad/s. None if the reference has no derivatives, or the vehicle has no flat state.
     """
     reference: Any = plan.reference
     if isinstance(reference, Shape):
@@ -73,7 +74,7 @@ def sample_flat_states(
 
 
 def measure(metric: str, log: Log, flat: Optional[np.ndarray]) -> Dict[str, float]:
-    """Compute the values of a metric of `METRICS`; NaN without flat states."""
+    """Compute the values of a metric in `METRICS`; NaN without flat states."""
     names = METRICS[metric]
     if flat is None:
         return dict.fromkeys(names, float("nan"))

@@ -13,10 +13,10 @@ from ..simulation.recording import TAIL
 from ..support.rotation import compute_tilts, to_yaw
 
 FAILURE_DISTANCE = 5.0
-"""Default tracking error at which a flight counts as failed, m."""
+"""Default tracking error above which a flight has failed, m."""
 
 EQUAL = 1e-9
-"""Position errors that differ by less are equal, m: the difference is rounding noise."""
+"""Position errors with a smaller difference count as equal, m: it is rounding noise."""
 
 UNITS = {
     "rms_position": "m",
@@ -39,7 +39,7 @@ UNITS = {
     "clearance": "m",
     "collisions": "",
 }
-"""Unit of each metric, by name."""
+"""Unit of each metric by name."""
 
 MEANINGS = {
     "rms_position": "RMS tracking error",
@@ -63,30 +63,30 @@ MEANINGS = {
     "collisions": "number of collisions with obstacles of the world",
 }
 
-_SETTLED = 0.02  # of a step
-_JUMP = 1e-3  # m; a larger sudden change of the reference between two rows is a step
+_SETTLED = 0.02  # relative to the step
+_JUMP = 1e-3  # m; a larger sudden change of the reference counts as a step
 
 
 class RotorData(NamedTuple):
-    """Numbers of a `Rotor` for metrics, which can be pickled."""
+    """Properties of a `Rotor` that metrics need; unlike the rotor, they can be pickled."""
 
     torque_coefficient: float
     slowdown: float
 
     @classmethod
     def of(cls, rotor: Rotor) -> RotorData:
-        """Return the numbers of a rotor."""
+        """Return the properties of a rotor."""
         return cls(rotor.torque_coefficient, rotor.slowdown)
 
 
 def find_failure_time(log: Log, distance: float = FAILURE_DISTANCE) -> Optional[float]:
-    """Return the first time at which the tracking error exceeds a distance [m], s, or None."""
+    """Return the first time at which the tracking error exceeds `distance` (m), s; else None."""
     away = np.flatnonzero(~(compute_errors(log) <= distance))
     return float(log.time[away[0]]) if len(away) else None
 
 
 def describe_failure(log: Log, distance: float = FAILURE_DISTANCE) -> str:
-    """Describe when and where the tracking error exceeds a distance [m]; "" if never."""
+    """Describe when and where the tracking error exceeds `distance` (m); "" if it never does."""
     time = find_failure_time(log, distance)
     if time is None:
         return ""
@@ -95,13 +95,13 @@ def describe_failure(log: Log, distance: float = FAILURE_DISTANCE) -> str:
 
 
 def compute_errors(log: Log) -> np.ndarray:
-    """Return the tracking error, m; shape (rows,)."""
+    """Return the tracking error, m, shape (rows,)."""
     error = log.topics["error"]
     return _compute_length(error["x"], error["y"], error["z"])
 
 
 def compute_rms_and_max(away: np.ndarray) -> Tuple[float, float]:
-    """Return RMS and maximum of errors."""
+    """Return the RMS and the maximum of tracking errors."""
     return float(np.sqrt(np.mean(away**2))), float(away.max())
 
 
@@ -120,15 +120,15 @@ def measure(
     saturated
         Share of saturated controller updates.
     rotors
-        Rotors of the vehicle, as in `Simulation.rotors`.
+        Rotors of the vehicle.
     variation
-        `ControllerPilot.variation` of the flight. Default: that of the rows of the log, which miss
-        what happens between them, and none of the commands.
+        `ControllerPilot.variation` of the flight. By default, the rotor variation is computed from
+        the rows of the log, which miss changes between them, and that of the commands is unknown.
 
     Returns
     -------
     dict
-        Value of each metric in `UNITS` up to the energy; NaN if undefined, such as the overshoot
+        Metrics in `UNITS` up to the angular velocity; NaN if undefined, such as the overshoot
         without a step.
     """
     time, away = log.time - log.time[0], compute_errors(log)
@@ -165,7 +165,7 @@ def measure(
 
 
 def _compute_length(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Return the lengths of vectors, faster than `numpy.linalg.norm` with an axis."""
+    """Return the lengths of vectors, faster than `numpy.linalg.norm` along an axis."""
     length: np.ndarray = np.sqrt(x**2 + y**2 + z**2)
     return length
 
@@ -175,7 +175,7 @@ def _integrate(values: np.ndarray, time: np.ndarray) -> float:
 
 
 def _measure_step(log: Log, away: np.ndarray) -> Tuple[float, float, float]:
-    """Return rise time, overshoot and settling time of a reference with one step, else NaN."""
+    """Return rise time, overshoot and settling time; NaN unless the reference has a single step."""
     none = math.nan, math.nan, math.nan
     wanted = np.column_stack([log.topics["reference"][axis] for axis in "xyz"])
     moved = _compute_length(*np.diff(wanted, axis=0).T)

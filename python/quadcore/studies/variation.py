@@ -1,4 +1,4 @@
-"""Changes of a flight at a point: model, tags, world, engine, scenario."""
+"""Changes of a flight at a point: model, tags, world, engine and scenario."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..support.values import format_value
 from .axes import OF_CONTROLLER, WHOLE
 from .design import Design
 
-_READ = 16  # cached models
+_READ = 16  # maximum number of cached models
 
 
 class Variation:
@@ -28,15 +28,15 @@ class Variation:
     models
         Files or names of built-in models.
     design
-        Points; their worlds and scenarios are read.
+        Points of the study. Their worlds and scenarios are read.
     parameters, xacro_args, ignore
         As for `Simulation`.
     scenario
-        Scenario of points without one.
+        Scenario of the points that have none.
     wind
-        Velocity of a constant wind in all flights, m/s.
+        Velocity of a constant wind in all flights, world axes, m/s.
     at
-        Place on Earth of the points' worlds; see `read_world`.
+        Location on Earth of the worlds of the points; see `read_world`.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class Variation:
         arguments, given = split_xacro_arguments(parameters, xacro_args)
         self.arguments = arguments
         self.set = {key: format_value(value) for key, value in given.items()}
-        """Values of all flights, by ``PLUGIN.TAG``, ``LINK.mass`` and so on."""
+        """Values that all flights share, by ``PLUGIN.TAG``, ``LINK.mass`` and so on."""
         self._wind = wind
         self._read = lru_cache(_READ)(
             lambda i, varied: read_model(models[i], {**arguments, **dict(varied)}, ignore)
@@ -68,11 +68,11 @@ class Variation:
 
     @property
     def taken(self) -> List[str]:
-        """Names of the parameters that all flights set."""
+        """Names of the parameters that are set for all flights."""
         return [*self.set, *(f"{XACRO}.{name}" for name in self.arguments)]
 
     def apply(self, plan: FlightPlan, model: int, point: Mapping[str, str]) -> FlightPlan:
-        """Apply the values of a point to a plan, except those of the controller."""
+        """Apply the values of a point to a plan, except for the values of the controller."""
         changed: Dict[str, Any] = {}
         parameters = dict(self.set)
         for name, value in point.items():
@@ -90,7 +90,7 @@ class Variation:
 
 
 def pick_controller_values(point: Mapping[str, str]) -> Dict[str, float]:
-    """Return the values of a point for the controller.
+    """Return the controller values of a point.
 
     Raises
     ------

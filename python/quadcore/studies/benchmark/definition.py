@@ -15,7 +15,7 @@ from ...support.parameters import suggest
 
 _FOLDER = "config/benchmark"
 _FILE = "benchmark.yaml"
-_LARGEST = 10**6  # bytes of a file
+_LARGEST = 10**6  # maximum size of a file, bytes
 
 VERSIONS = tuple(
     sorted(path.parent.name for path in (resources.find_root() / _FOLDER).glob(f"*/{_FILE}"))
@@ -30,7 +30,7 @@ class Condition(NamedTuple):
     name: str
     references: Sequence[str]
     scenario: Optional[str] = None
-    """File in the folder of the version; ``{vehicle}`` stands for the vehicle's name."""
+    """File name in the folder of the version; ``{vehicle}`` stands for the vehicle. None: none."""
     seeds: int = 1
     delay: Optional[float] = None
     """Actuation delay of all controllers, s. Default: the controller's own."""
@@ -51,9 +51,9 @@ class Definition:
     duration : float
         Duration of each flight, s.
     vehicles : dict
-        Arguments of the xacro file, by vehicle.
+        Arguments of the xacro file by vehicle.
     references : dict of str to str
-        References as on the command line, by label.
+        References by label, as on the command line.
     conditions : list of Condition
         Scenarios of all categories.
     digest : str
@@ -98,7 +98,7 @@ class Definition:
         return self.folder / "results" / "built_in.csv"
 
     def find_scenario(self, condition: Condition, vehicle: str) -> Optional[Path]:
-        """Return the scenario file of a condition for a vehicle, if any."""
+        """Return the scenario file of a condition for a vehicle; None without a scenario."""
         if condition.scenario is None:
             return None
         return self.folder / condition.scenario.format(vehicle=vehicle)

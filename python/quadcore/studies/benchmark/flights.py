@@ -1,4 +1,4 @@
-"""Flights of the benchmark."""
+"""Plans, flights and results of the benchmark."""
 
 from __future__ import annotations
 
@@ -39,9 +39,11 @@ class Benchmark(NamedTuple):
     parts : list of Part
         Plans of the flights.
     table : list of dict
-        Row per flight, as in `Evaluation.table`, with its ``category``; model is the vehicle.
+        Row per flight, as in `Evaluation.table`, with its ``category``. The model is the name of
+        the vehicle.
     groups : list of dict
-        Row per combination, over its seeds, as in `Evaluation.groups`, with its ``category``.
+        Row per combination with the statistics over its seeds, as in `Evaluation.groups`, and its
+        ``category``.
     scores : list of Score
         Score of each controller in each category.
     outcomes : list of Outcome
@@ -57,7 +59,7 @@ class Benchmark(NamedTuple):
 
     @property
     def is_complete(self) -> bool:
-        """Whether all flights of the version were simulated."""
+        """Whether all flights of the version have run."""
         vehicles = {part.plan.models[0] for part in self.parts}
         categories = {part.condition.category for part in self.parts}
         given = self.definition
@@ -84,11 +86,12 @@ def benchmark(
     Parameters
     ----------
     controllers
-        As for `evaluate`. Default: all built-in controllers except those of firmware.
+        As for `evaluate`. Default: all built-in controllers except the firmware controllers.
     version
         Version of the benchmark.
     vehicles, categories
-        Names of those to simulate. Default: all. A part of the flights is no complete result.
+        Names of the vehicles and categories to simulate. Default: all. With a selection, the result
+        is not complete.
     time_limit
         Wall-clock limit per flight, s.
     processes
@@ -99,9 +102,10 @@ def benchmark(
     Raises
     ------
     InputError
-        If an argument is invalid; no flight has run.
+        If an argument is invalid. In this case no flight runs.
     KeyboardInterrupt
-        With the attribute `benchmark`, in which the missing flights are marked.
+        On Ctrl-C. The attribute `benchmark` contains the results so far and marks the missing
+        flights.
     """
     definition = Definition(version)
     options = EvaluateOptions(time_limit=time_limit, processes=processes)
@@ -117,7 +121,7 @@ def make_parts(
     categories: Union[str, Sequence[str], None],
     options: EvaluateOptions,
 ) -> List[Part]:
-    """Make the plans of a version; of the options, only time limit and processes have an effect."""
+    """Make the plans of a version; of `options`, only the time limit and the processes apply."""
     chosen = _choose("vehicle", vehicles, list(definition.vehicles))
     kinds = _choose("category", categories, definition.categories)
     return [
@@ -131,7 +135,7 @@ def make_parts(
 def fly_parts(
     definition: Definition, parts: List[Part], progress: Optional[Progress] = None
 ) -> Benchmark:
-    """Simulate all flights of some plans; raises as `benchmark` does."""
+    """Simulate all flights of some plans; the errors are those of `benchmark`."""
     total = sum(len(part.plan) for part in parts)
     outcomes: List[Outcome] = []
 
@@ -196,7 +200,7 @@ def _make_plan(
     options: EvaluateOptions,
 ) -> Plan:
     shapes: Any = {label: definition.references[label] for label in condition.references}
-    with suppress_warnings():  # about the vehicles, which a version fixes
+    with suppress_warnings():  # users cannot change the vehicles of a version
         return Plan(
             _GENERAL if controllers is None else controllers,
             shapes,

@@ -1,4 +1,4 @@
-"""Files of a benchmark: results, record, page."""
+"""Files of a benchmark: results, record and page."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def write(found: Benchmark, folder: Path) -> List[Path]:
 
 
 def make_results(found: Benchmark) -> bytes:
-    """Write a row for each combination, with a fixed number of digits."""
+    """Write a row of results for each combination, with a fixed number of digits."""
     rows = make_cells(found.groups)
     written = [
         [_round(value) if isinstance(value, float) else value for value in row.values()]
@@ -61,7 +61,7 @@ def make_results(found: Benchmark) -> bytes:
 
 
 def list_results_notes(found: Benchmark) -> List[str]:
-    """Return what limits the results, and the ranks of the controllers, in a few lines."""
+    """Describe the limitations of the results and the ranks of the controllers, one line each."""
     notes = [] if found.is_complete else [_describe_missing(found)]
     return notes + describe_ranks(rank_controllers(found.groups), CONFIDENCE)
 
@@ -80,7 +80,7 @@ def _describe_missing(found: Benchmark) -> str:
 
 
 def _describe_step_error(found: Benchmark) -> List[str]:
-    """Describe the numerical error of the plant in the first flight, unless flights are missing."""
+    """Describe the numerical error of the first flight; empty if flights are missing."""
     if any(row["failure"] == NOT_FLOWN for row in found.table):
         return []
     error = measure_step_error(found.parts[0].plan)

@@ -1,4 +1,4 @@
-"""Record of a benchmark: version, controllers with the hash of their source, machine."""
+"""Record of a benchmark: version, controllers with the hash of their source, and machine."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from ..control_setup import ControlSetup, names_user_code
 from ..evaluate.output import list_controllers
 from .flights import Benchmark
 
-_LARGEST = 10**8  # bytes of a source file
+_LARGEST = 10**8  # maximum size of a source file, bytes
 
 
 def make_record(found: Benchmark) -> Dict[str, Any]:
-    """Describe how a result was made, as plain values that are the same in each repetition."""
+    """Describe how a result was made, as plain values that do not change between repetitions."""
     control = found.parts[0].plan.control
     return {
         "benchmark": found.definition.version,
@@ -57,7 +57,7 @@ def _describe_controller(control: ControlSetup, row: int) -> Dict[str, Any]:
 
 
 def find_source(thing: Any) -> Optional[Path]:
-    """Find the file that defines a user's controller; None for one without a file."""
+    """Find the file that defines a user-defined controller; None if there is no such file."""
     if isinstance(thing, str) and controllers.names_gains_file(thing):
         return find_source(gains.read(thing).law)
     if isinstance(thing, str) and names_user_code(thing):
@@ -70,7 +70,7 @@ def find_source(thing: Any) -> Optional[Path]:
         return None if spec is None or spec.origin is None else Path(spec.origin)
     try:
         file = inspect.getsourcefile(thing if inspect.isroutine(thing) else type(thing))
-    except TypeError:  # made by the interpreter itself
+    except TypeError:  # classes of the interpreter have no source
         return None
     return None if file is None or not Path(file).is_file() else Path(file)
 

@@ -1,4 +1,4 @@
-"""Scores of controllers: one for each category of a benchmark, without a sum."""
+"""Scores of controllers: one for each category of a benchmark, without an overall score."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Sequence, Tuple
 import numpy as np
 
 NAMES = ("controller", "category", "model", "scenario", "reference")
-"""Names of a row of results."""
+"""Columns that identify a row of results."""
 
 METRICS = ("rms_position", "max_position", "final_position")
-"""Metrics of a row of results, each with the ends of its interval."""
+"""Metrics of a row of results, each with the limits of its confidence interval."""
 
 DIGITS = 4
-"""Digits of the results, with which they are the same on all machines."""
+"""Significant digits of the results, few enough to be the same on all machines."""
 
 
 class Score(NamedTuple):
@@ -24,15 +24,15 @@ class Score(NamedTuple):
     category: str
     error: float
     """Median over the combinations of the mean RMS tracking error, m. A combination with a failed
-    flight counts as infinite; NaN if no flight ran."""
+    flight counts as infinite. NaN if no flight ran."""
     flights: int
     """Number of flights that ran."""
     failed: int
-    """Number of those that failed."""
+    """Number of flights that failed."""
 
 
 def make_cells(groups: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
-    """Make a row of results for each row of `Benchmark.groups`: names, counts, mean errors."""
+    """Make a row of results for each row of `Benchmark.groups`: names, counts and mean errors."""
     cells = []
     for group in groups:
         cell = {name: group[name] for name in NAMES}
@@ -69,7 +69,7 @@ def _compute_median(cells: Sequence[Mapping[str, Any]]) -> float:
 
 
 def make_score_table(scores: Sequence[Score]) -> Tuple[List[str], List[Tuple[str, List[str]]]]:
-    """Arrange scores: the categories, and for each controller its scores as text."""
+    """Arrange scores in a table: the categories, and the formatted scores of each controller."""
     categories = list(dict.fromkeys(score.category for score in scores))
     rows: Dict[str, List[str]] = {}
     for score in scores:
@@ -78,7 +78,7 @@ def make_score_table(scores: Sequence[Score]) -> Tuple[List[str], List[Tuple[str
 
 
 def format_score(score: Score) -> str:
-    """Format a score: the median error, and the number of failed flights if there are any."""
+    """Format a score: the median error, and the number of failed flights unless it is 0."""
     failures = f"{score.failed} of {score.flights} failed"
     if math.isinf(score.error):
         return failures

@@ -1,4 +1,4 @@
-"""Comparison of one flight under different models and parameters."""
+"""Comparison of one flight with different models and parameters."""
 
 from .compare import compare
 from .model_differences import Difference

@@ -65,18 +65,18 @@ def compare(
     Parameters
     ----------
     models
-        One or several models: files or names of built-in models.
+        Files or names of built-in models; one or several.
     vary
-        Values by ``"PLUGIN.TAG"``, ``"LINK.mass"`` (or another value of a link), ``"xacro.ARG"``,
+        Values by ``"PLUGIN.TAG"``, a value of a link such as ``"LINK.mass"``, ``"xacro.ARG"``,
         ``"engine"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``. Tags joined by commas
         take the same value. All combinations are simulated; the last axis varies fastest.
     commands, engine, wrenches
         As for `Simulation` and `Simulation.run`.
     controller, reference
         As for `Simulation.run`. Flights start on the reference unless `spawn` is given. Without a
-        reference the vehicle hovers at the spawn.
+        reference, the vehicle hovers at the spawn position.
     against
-        Row of the baseline; None: the first row that succeeds.
+        Row of the baseline. None: the first row that succeeds.
     logs
         Whether to keep the logs.
     **options
@@ -84,19 +84,21 @@ def compare(
     Returns
     -------
     Comparison
-        Results that do not depend on the number of processes. Flights of user-defined controllers
-        or references run in separate forked processes.
+        Results, which do not depend on the number of processes. Flights with user-defined
+        controllers or references run in separate forked processes.
 
     Raises
     ------
     InputError
         If there are too many cases, the logs exceed 2 GiB, a file cannot be read, or a tag does not
         exist. Also if the models need different commands, or the controller supports none of them.
-        No flight has run. A single invalid case is a row with its failure instead.
+        In these cases no flight runs. If a single case is invalid, its row contains the failure
+        instead.
     FlightError
         If the baseline given by `against` fails.
     KeyboardInterrupt
-        With the attribute `comparison`, in which the missing rows are marked.
+        On Ctrl-C. The attribute `comparison` contains the results so far and marks the missing
+        rows.
     """
     shared = CompareOptions(**options)
     timing = shared.controller_rate, shared.delay
@@ -121,7 +123,8 @@ def fly_plan(
     plan
         Flights to simulate.
     keep
-        Called as keep(row, log) in the process of the flight; its result replaces the log.
+        Function called as keep(row, log) in the process of the flight; its return value replaces
+        the log.
     progress, against
         As for `compare`.
     """
@@ -154,11 +157,11 @@ def fly_plan(
 
 
 def _fly_first(plan: Plan, rows: List[int], tally: Tally, wanted: Optional[int]) -> Optional[Log]:
-    """Simulate rows until one succeeds, the baseline; a row that is wanted must succeed."""
+    """Simulate rows until one succeeds, and make it the baseline; row `wanted` must succeed."""
     outcomes: List[Union[Log, QuadcoreError]] = []
     while rows:
         row = rows.pop(0)
-        # In a child process, so that a crash does not end the comparison.
+        # In a child process, so that a crash of the flight does not end the comparison.
         run_contained(plan.fly, [plan[row]], lambda _, outcome: outcomes.append(outcome), 1)
         log = outcomes.pop()
         if isinstance(log, Log):

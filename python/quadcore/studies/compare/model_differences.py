@@ -15,7 +15,7 @@ class Difference(NamedTuple):
     """A value or element in which two models differ."""
 
     what: str
-    """``PLUGIN.TAG`` or the path of an element or attribute: ``link frame/inertial/mass value``."""
+    """Path of an element or attribute (``link frame/inertial/mass value``), or ``PLUGIN.TAG``."""
     before: str
     after: str
     before_at: str
@@ -28,13 +28,13 @@ class Fact(NamedTuple):
 
     text: str
     at: str
-    """``FILE:LINE``"""
+    """``FILE:LINE``."""
     within: Optional[str]
     """Enclosing link, joint or plugin, if any."""
 
 
 def list_facts(document: Document) -> Dict[str, Fact]:
-    """List everything in a model that may affect a flight, by name, in the order of the file."""
+    """List all values of a model that can affect a flight, by name, in the order of the file."""
     found: Dict[str, Fact] = {}
     for element in _parse(document).children:
         if element.tag == "gazebo":
@@ -46,7 +46,7 @@ def list_facts(document: Document) -> Dict[str, Fact]:
 
 
 def compare_documents(before: Document, after: Document) -> List[Difference]:
-    """List the differences between two models; numbers are compared as numbers."""
+    """List the differences between two models; numeric texts are compared as numbers."""
     old, new = list_facts(before), list_facts(after)
     rows = []
     for what in {**old, **new}:
@@ -58,7 +58,7 @@ def compare_documents(before: Document, after: Document) -> List[Difference]:
         fact, other = (a, new) if a is not None else (b, old)
         assert fact is not None
         if fact.within is not None and fact.within not in other:
-            continue  # the enclosing element is listed
+            continue  # the missing enclosing element is already listed
         present = fact.text or "present"
         if a is not None:
             rows.append(Difference(what, present, ABSENT, fact.at, ""))
@@ -75,7 +75,7 @@ class _Element:
 
 
 def _parse(document: Document) -> _Element:
-    # Not with xml_source: models may use undeclared prefixes.
+    # Not with xml_source, because models may use undeclared prefixes.
     parser = expat.ParserCreate()
     top = _Element("", {}, "")
     stack = [top]
@@ -98,7 +98,7 @@ def _parse(document: Document) -> _Element:
 
 
 def _add(found: Dict[str, Fact], element: _Element) -> None:
-    """Add a top-level element and its contents."""
+    """Add a top-level element and its contents to the facts."""
     attributes = dict(element.attributes)
     name = f"{element.tag} {attributes.pop('name', '')}".strip()
     main = attributes.pop({"plugin": "filename", "joint": "type"}.get(element.tag, ""), "")
@@ -130,7 +130,7 @@ def _add_inner(
 
 
 def _compare_joint_order(old: Dict[str, Fact], new: Dict[str, Fact]) -> List[Difference]:
-    """List a different order of the joints, which numbers the rotors."""
+    """Report a different order of the joints, because the order numbers the rotors."""
     a = [name for name in old if name.startswith("joint ") and old[name].within is None]
     b = [name for name in new if name.startswith("joint ") and new[name].within is None]
     a, b = [name for name in a if name in b], [name for name in b if name in a]

@@ -1,4 +1,4 @@
-"""Files of a comparison: table, plots, page."""
+"""Files of a comparison: table, plots and page."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from .plan import Plan
 from .result import Comparison
 
 _ROWS_OF_PAGE = 200
-_DRAWN = 40  # flights in one plot
+_DRAWN = 40  # maximum number of flights in a plot
 _CONDITIONS = ("engine", "controller", "reference", "commands", "scenario", "duration")
 
 
 def pick_drawn(count: int) -> List[int]:
-    """Return the flights to draw: all, or evenly spaced ones with the first and the last."""
+    """Return the rows to draw: all, or evenly spaced rows that include the first and the last."""
     return pick_evenly(count, _DRAWN)
 
 
@@ -40,7 +40,7 @@ FILES = ("table.csv", "comparison.json", DOCUMENT, "report.html")
 
 
 def log_name(row: int, count: int) -> str:
-    """Return the file name of the log of a flight, one of `count`, within the folder."""
+    """Return the path of a flight's log within the folder; `count` is the number of flights."""
     return f"logs/{row + 1:0{len(str(count))}}.csv"
 
 
@@ -65,7 +65,7 @@ def write(
     Parameters
     ----------
     comparison
-        Results; `logs` contains the decimated logs of the flights to draw.
+        Results, in which `logs` contains the decimated logs of the drawn flights.
     plan
         Plan of the comparison.
     flight
@@ -73,13 +73,13 @@ def write(
     folder
         Existing folder.
     plots
-        Whether to draw.
+        Whether to draw plots.
     has_logs
         Whether the logs of the flights were written.
     """
     from ...report.page import write_page  # jinja2 is slow to import
 
-    # Results first: drawing is slow and can fail.
+    # The tables come first, because drawing is slow and can fail.
     tables = {
         "table.csv": make_csv(_table_rows(comparison)),
         "comparison.json": make_json(_make_content(comparison, flight, has_logs)),
@@ -124,7 +124,7 @@ def _list_flights(comparison: Comparison, plan: Plan) -> List[WrittenFlight]:
 
 
 def _make_player(comparison: Comparison, plan: Plan, plots: bool) -> str:
-    """Make an animation of the flights that are drawn; empty without any."""
+    """Make an animation of the drawn flights; "" without any."""
     from ...report.player import PlayerFlight, make_section
 
     shown, worlds = [], []
@@ -216,7 +216,7 @@ def _page_values(
 
 
 def _describe_conditions(flight: Mapping[str, str], plan: Plan) -> str:
-    """Describe what all flights share in one line, for the head of the page."""
+    """Describe the shared conditions of all flights in one line, for the head of the page."""
     kind = "Models" if len(plan.models) > 1 else "Model"
     shared = [f"{name} {flight[name]}" for name in _CONDITIONS if name in flight]
     varied = [f"{axis.name} {format_values(axis.values)}" for axis in plan.axes]
@@ -241,13 +241,13 @@ def _describe_largest(comparison: Comparison, plan: Plan) -> str:
 
 
 def _group_states(states: Sequence[str]) -> List[Tuple[str, Sequence[str]]]:
-    """Split the states into tables that fit the page: norms first, then components."""
+    """Split the states into tables that fit the page: norms, then components."""
     parts = [states[4:7], states[7:10], states[10:13], states[13:16], states[16:]]
     return [("", states[:4]), *zip((*states[:4], "rotors"), parts)]
 
 
 def format_values(values: Any) -> str:
-    """List the values of an axis; the middle of a long list is left out."""
+    """Format the values of an axis; the middle of a long list is omitted."""
     if len(values) <= 12:
         return ", ".join(values)
     return ", ".join([*(values[i] for i in range(3)), "...", values[len(values) - 1]]) + (

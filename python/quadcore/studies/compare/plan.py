@@ -83,7 +83,7 @@ class Plan(Cases):
             self.set_commands(commands, [width] * len(models))
 
     def fly(self, case: Case) -> Log:
-        """Simulate a variant; errors pass through."""
+        """Simulate a variant; errors propagate."""
         with time_limit(self.options.time_limit):
             flight = self.make_plan(case)
             simulation = flight.simulation()
@@ -91,7 +91,7 @@ class Plan(Cases):
                 return flight.fly_with(simulation)
 
     def make_label(self, case: Case) -> str:
-        """Label a variant by the values that differ among the variants."""
+        """Label a variant by the values that differ between variants."""
         parts = [self.models[case.model]] if len(self.models) > 1 else []
         for axis, value in zip(self.axes, self.design[case.point].values()):
             if len(axis.values) > 1 or not parts:
@@ -101,7 +101,7 @@ class Plan(Cases):
         return ", ".join(parts) or self.models[case.model]
 
     def compare_models(self) -> Dict[str, List[Difference]]:
-        """List the differences of each model's file from the first one, by model."""
+        """List the differences of each model file from the first one, by model."""
         first, *others = self.variation.models
         return {
             name: compare_documents(first.document, model.document)
@@ -109,13 +109,13 @@ class Plan(Cases):
         }
 
     def format_written_value(self, axis: Axis) -> str:
-        """Format the values that the tags of an axis have in the first model, with their places."""
+        """Format the values and places of an axis's tags in the first model file."""
         written = list_facts(self.variation.models[0].document)
         found = [written[tag] for tag in axis.tags if tag in written]
         return "; ".join(f"{fact.text} ({fact.at})" for fact in found)
 
     def _build_models(self) -> Dict[int, Simulation]:
-        """Build the unchanged models; an invalid one becomes a failed variant."""
+        """Build the unchanged models; a model that cannot be built is omitted and fails later."""
         built = {}
         scenario = {name: value for name, value in self.design[0].items() if name == "scenario"}
         for model in range(len(self.models)):
@@ -142,7 +142,7 @@ class Plan(Cases):
                         raise InputError(f"vary {tag}: it is also set. Keep one.")
 
     def _check_guidance(self, built: Mapping[int, Simulation]) -> None:
-        """Raise `InputError` if the controller can start on none of the models."""
+        """Raise `InputError` if the controller supports none of the models."""
         refused = []
         for model, vehicle in built.items():
             try:

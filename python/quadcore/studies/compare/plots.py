@@ -1,4 +1,4 @@
-"""Plots of several flights in common axes."""
+"""Plots of several flights in shared axes."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from ...support.rotation import unwrap_angles
 from ..figures import Figures
 from ..flight_differences import compute_differences
 
-_LABELS = 6  # in the legend of many flights
-_NO_DIFFERENCE = 1e-9  # m, deg, m/s, rad/s
+_LABELS = 6  # maximum number of labels in the legend of many flights
+_NO_DIFFERENCE = 1e-9  # in m, deg, m/s and rad/s; smaller differences are drawn flat
 
 
 class Curve(NamedTuple):
-    """One flight of a plot."""
+    """Labelled log of a flight in a plot."""
 
     label: str
     log: Log
@@ -53,7 +53,7 @@ def list_figures(curves: Sequence[Curve], against: Log, name: str) -> Figures:
 def _curve_styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
     count = len(curves)
     viridis = ScalarMappable(cmap="viridis")
-    viridis.set_clim(0, 1.05 * count)  # without the palest colours
+    viridis.set_clim(0, 1.05 * count)  # omit the palest colours
     shades = viridis.to_rgba(np.arange(count))
     named = set(np.linspace(0, count - 1, min(count, _LABELS)).round().astype(int))
     styles = []
@@ -62,7 +62,7 @@ def _curve_styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
         styles.append(
             {
                 "color": PALETTE[i] if few else shades[i],
-                # Earlier curves are wider, so that later ones do not hide them.
+                # Earlier curves are wider, so that later curves do not hide them.
                 "linewidth": 1.2 + (1.6 * (1 - i / count) if few else 0),
                 "label": curve.label if few or i in named else None,
             }
@@ -137,21 +137,21 @@ def _draw_panels(
     Parameters
     ----------
     sides
-        Arrays of each flight, and the labels of their columns.
+        For each side, the values of each flight and the labels of the columns.
     least
-        Range below which curves are drawn flat.
+        Minimum range of the values; smaller variations are drawn flat.
     right
         Width of the right margin, inches.
     """
     named = [style["label"] for style in styles if style["label"]]
-    # A character is at most 0.1 inches wide, a legend line 0.7.
+    # A character is at most 0.1 inches wide, and a line sample in the legend 0.7 inches.
     columns = max(1, int((8 if len(sides) > 1 else 7) * 10 / (7 + max(map(len, named)))))
     lines = 1 + (len(named) - 1) // columns
     above = 0.45 + 0.22 * lines
     figure, grid = panels(title, len(sides[0][1]), len(sides), above=above, right=right)
     for column, (values, labels) in zip(grid.T, sides):
         for curve, style, table in zip(curves, styles, values):
-            # Differences end where the baseline ends.
+            # Differences end with the shorter of both flights.
             for axes, state in zip(column, table.T):
                 axes.plot(curve.log.time[: len(state)], state, **style)
         for axes, label in zip(column, labels):

@@ -39,18 +39,18 @@ class Comparison(NamedTuple):
     Attributes
     ----------
     table : ndarray
-        Structured array, a row per variant: ``model``, each axis, and ``failure`` ("" for success).
-        With a controller, ``rms_error`` and ``max_error``, the tracking error (m). ``final_STATE``
-        and ``max_STATE`` for each of `states`, NaN after a failure.
+        Structured array with a row per variant. Columns: ``model``, each axis, ``failure`` ("" for
+        success), and ``final_STATE`` and ``max_STATE`` for each of `states`, NaN after a failure.
+        With a controller also ``rms_error`` and ``max_error``, the tracking error (m).
     logs : list
-        `Log` of each variant, None after a failure; empty without logs.
+        `Log` of each variant, None after a failure; empty if logs are not kept.
     states : dict of str to str
-        Unit of each compared state, by name. ``position``, ``velocity`` and ``rates`` are norms of
-        difference vectors, ``attitude`` is the angle between both attitudes.
+        Unit of each compared state. ``position``, ``velocity`` and ``rates`` are norms of
+        difference vectors. ``attitude`` is the angle between the two attitudes.
     against : int or None
         Row of the baseline.
     differences : dict of str to list of Difference
-        Differences of each further model's file from the first model's file.
+        Differences of each model file from the first one, by model.
     refused : int
         Number of variants with invalid input, which did not run.
     """
@@ -87,7 +87,7 @@ def measure(plan: Plan, against: Log, log: Log) -> Measured:
 
 
 class Tally:
-    """Results so far."""
+    """Results of a comparison so far."""
 
     def __init__(self, plan: Plan, keep: Optional[Keep], progress: Optional[Progress]) -> None:
         self.keep = keep
@@ -101,7 +101,7 @@ class Tally:
         self._kept: List[Any] = [] if keep is None else [None] * len(plan)
 
     def set_baseline(self, row: int, log: Log) -> None:
-        """Set the baseline."""
+        """Set the baseline and the number of its rotors."""
         self.against = row
         self._allocate(log.rotor_velocity.shape[1])
 
@@ -153,7 +153,7 @@ class Tally:
 
 
 def _convert_numbers(values: Sequence[str]) -> np.ndarray:
-    """Convert texts to numbers if all are numbers."""
+    """Convert texts to numbers if all of them are numbers."""
     try:
         return np.array([float(value) for value in values])
     except ValueError:

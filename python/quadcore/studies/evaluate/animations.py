@@ -1,4 +1,4 @@
-"""Flights of an evaluation to watch: animations on the page, and logs with their models."""
+"""Drawn flights of an evaluation: animations on the page, and logs with their models."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .plots import group_flights, name_group
 
 
 def make_animations(evaluation: Evaluation, plan: Plan) -> List[Dict[str, Any]]:
-    """Make an animation of the flights along each reference in each scenario."""
+    """Make one animation for each combination of reference and scenario."""
     from ...report.player import PlayerFlight, make_section
 
     animations = []
@@ -32,7 +32,7 @@ def make_animations(evaluation: Evaluation, plan: Plan) -> List[Dict[str, Any]]:
 
 
 def write_drawn_flights(evaluation: Evaluation, plan: Plan, folder: Path) -> List[Path]:
-    """Write the logs of the flights that are drawn, their models, and ``run.json``."""
+    """Write the logs and models of the drawn flights, and ``run.json``."""
     listed, logs = [], []
     for (reference, scenario), flights in group_flights(evaluation).items():
         marks = _list_marks(plan, scenario)
@@ -57,5 +57,5 @@ def write_drawn_flights(evaluation: Evaluation, plan: Plan, folder: Path) -> Lis
 
 
 def _list_marks(plan: Plan, scenario: str) -> List[Tuple[float, str]]:
-    """List times and descriptions of the events of a scenario."""
+    """List the times (s) and descriptions of the events of a scenario."""
     return [(event.time, event.text) for event in plan.list_events().get(scenario, ())]

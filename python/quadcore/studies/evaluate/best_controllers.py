@@ -1,4 +1,4 @@
-"""Best controllers of each cell: those that no other one beats beyond chance."""
+"""Best controllers of each cell: those that no other controller significantly outperforms."""
 
 from __future__ import annotations
 
@@ -14,23 +14,24 @@ RANKED = "final_position"
 """Metric by which controllers are ranked."""
 
 CELL = ("reference", "engine", "model", "scenario")
-"""Names of a cell of the study; its controllers are compared with each other."""
+"""Names that identify a cell of the study, within which controllers are compared."""
 
 
 def mark_best(groups: Sequence[Dict[str, Any]], flights: Sequence[Sequence[float]]) -> None:
     """Add ``is_best`` and ``p_best`` to the rows of `Evaluation.groups`.
 
     The best controller of a cell has the lowest mean of `RANKED` among those without a failed
-    flight. A t test over the seeds compares it with each of the others, with Holm's correction for
-    all comparisons of the study. Controllers that do not differ significantly from it are marked,
-    too.
+    flight. A t test over the seeds compares it with each other controller, with Holm's correction
+    for all comparisons of the study. Controllers without a significant difference are marked as
+    well.
 
     Parameters
     ----------
     groups
-        Rows; ``p_best`` becomes the corrected p-value, NaN without a comparison.
+        Rows to change; ``p_best`` becomes the corrected p-value, NaN without a comparison.
     flights
-        For each row, the metric `RANKED` of each flight, by seed; NaN for a failed flight.
+        For each row, the metric `RANKED` of each flight in the order of the seeds; NaN for a failed
+        flight.
     """
     cells: Dict[Any, List[int]] = {}
     for row, group in enumerate(groups):
@@ -44,7 +45,7 @@ def mark_best(groups: Sequence[Dict[str, Any]], flights: Sequence[Sequence[float
         groups[best]["is_best"] = True
         for row in rows:
             if row != best:
-                # Recorded flights may be of different numbers.
+                # The number of recorded flights may differ between controllers.
                 differences = np.array([a - b for a, b in zip(flights[row], flights[best])])
                 differences = differences[np.isfinite(differences)]
                 compared.append(row)
@@ -56,7 +57,7 @@ def mark_best(groups: Sequence[Dict[str, Any]], flights: Sequence[Sequence[float
 
 
 def describe_seeds(groups: Sequence[Mapping[str, Any]]) -> List[str]:
-    """State what the number of seeds permits: one line per limitation."""
+    """Describe the limitations that result from the number of seeds, one line each."""
     flown = [group for group in groups if group["flights"]]
     certain = [group for group in flown if group["is_random"] is False]
     found = []

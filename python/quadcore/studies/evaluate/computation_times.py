@@ -18,9 +18,9 @@ def summarise_computation_times(evaluation: Evaluation, plan: Plan) -> List[Dict
     Returns
     -------
     list of dict
-        Row per controller, model and engine, with the number of timed flights. The times are
-        medians over the flights of the median and the 99 % quantile of a call. The last column is
-        the share of that quantile in the time between two calls.
+        Row per controller, model and engine. It contains the number of timed flights, and the
+        medians over these flights of two values: the median and the 99 % quantile of a call. The
+        last column is the ratio of that quantile to the update period.
     """
     found: Dict[Tuple[str, ...], List[Outcome]] = {}
     for case, row, outcome in zip(plan, evaluation.table, evaluation.outcomes):

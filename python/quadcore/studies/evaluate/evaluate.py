@@ -49,7 +49,7 @@ from .trial import Trial
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-_DRAWN = 60  # flights with logs for plots and animations
+_DRAWN = 60  # maximum number of flights with logs for plots and animations
 
 
 class Evaluation(NamedTuple):
@@ -59,24 +59,25 @@ class Evaluation(NamedTuple):
     ----------
     table : list of dict
         Row per flight: controller, reference, engine, model, scenario, seed, failure ("" for
-        success) and each metric, NaN after a failure.
+        success), and each metric, NaN after a failure.
     groups : list of dict
-        Row per combination, over its seeds: flights, not_flown and failure_rate. For each of
-        `units`, mean and interval (low, high) of the successful flights, and cvar, in which a
-        failure counts as infinite. The mean difference from the first controller, paired by seed,
-        with its interval and the number of pairs. Cohen's d of the differences of the last 10 s,
-        effect_size. is_random, whether seeds change the flights (None if unknown). For is_best and
-        p_best, see `mark_best`.
+        Row per combination with the statistics over its seeds: flights, not_flown and failure_rate.
+        For each of `units`, mean and interval (low, high) of the successful flights, and cvar, in
+        which a failure counts as infinite. Also the mean difference from the first controller,
+        paired by seed, with its interval and the number of pairs. The effect_size is Cohen's d of
+        the differences in the last 10 s. The value is_random is true if the seeds change the
+        flights (None if unknown). For is_best and p_best, see `mark_best`.
     margins : list of dict
         Row per controller, empty without a search; see `evaluate.margins`.
     poles : list of dict
         Row per axis of each cascaded controller in hover; see `compute_poles`.
     outcomes : sequence of Outcome
-        Outcome of each flight. Those of the first seed contain a log, for at most 60 combinations.
+        Outcome of each flight. For at most 60 combinations, the outcome of the first seed contains
+        a log.
     units : mapping of str to str
         Unit of each metric, including those that `constraints` and `metrics` add.
     loops : sequence of dict
-        Row per controller, engine, model and axis with the option `frequency_response`; see
+        Row per controller, engine, model and axis, if the option `frequency_response` is set; see
         `measure_loops`.
     """
 
@@ -122,7 +123,7 @@ def evaluate(
     margins: bool = False,
     **options: Unpack[EvaluateKeywords],
 ) -> Evaluation:
-    """Measure the tracking error of controllers along references.
+    """Measure the tracking error of controllers on references.
 
     Parameters
     ----------
@@ -130,15 +131,15 @@ def evaluate(
         Controller names, ``NAME:KEY=VALUE,...``, gains files, ``MODULE:CLASS``, or objects as for
         `Simulation.run`; or a mapping of labels to these.
     references
-        Names as on the command line, objects of `quadcore.references`, or a mapping of labels to
+        Names as on the command line, or objects of `quadcore.references`; or a mapping of labels to
         these.
     engines, models
         One or several names (default: "eigen", "quadrotor").
     engine
-        One engine, instead of `engines`.
+        Single engine, instead of `engines`.
     vary
-        Conditions by ``"PLUGIN.TAG"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``. KEY is
-        ``rate``, ``delay`` or a parameter of the controller. All combinations are simulated.
+        Conditions by ``"PLUGIN.TAG"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``, where
+        KEY is ``rate``, ``delay`` or a parameter of the controller. All combinations are simulated.
     margins
         Whether to search for gain and delay margins.
     **options
@@ -146,15 +147,16 @@ def evaluate(
     Returns
     -------
     Evaluation
-        Results that do not depend on the number of processes, except for the measured durations.
-        Flights of user-defined controllers or references run in separate forked processes.
+        Results, which do not depend on the number of processes, except for the measured durations.
+        Flights with user-defined controllers or references run in separate forked processes.
 
     Raises
     ------
     InputError
-        If an argument is invalid; no flight has run.
+        If an argument is invalid. In this case no flight runs.
     KeyboardInterrupt
-        With the attribute `evaluation`, in which the missing rows are marked.
+        On Ctrl-C. The attribute `evaluation` contains the results so far and marks the missing
+        rows.
     """
     shared = EvaluateOptions(**options)
     names = choose_engines(engine, engines), arguments.to_list(models)
@@ -176,7 +178,7 @@ def fly_plan(plan: Plan, progress: Optional[Progress] = None, margins: bool = Fa
 
 
 def fly_outcomes(plan: Plan, progress: Optional[Progress] = None) -> List[Outcome]:
-    """Simulate all flights of a plan, without logs; an interrupt has the attribute `outcomes`."""
+    """Simulate all flights of a plan without logs; an interrupt has the attribute `outcomes`."""
     flights = _Flights(plan, progress, margins=False)
     try:
         flights.fly()
@@ -200,7 +202,7 @@ class _Flights:
                 warn(plan.omitted_margins)
 
     def fly(self, drawn: Collection[int] = ()) -> None:
-        """Simulate all cases, then the trials of the margin search."""
+        """Simulate all cases, then the flights of the margin search."""
         plan, rows = self._plan, range(len(self._plan))
         flights = [partial(plan.make_plan, case) for case in plan]
         fly = partial(self._fly_tasks, flights, self.outcomes, drawn=drawn)
@@ -238,7 +240,7 @@ class _Flights:
         )
 
     def _measure_times(self) -> List[float]:
-        """Return the 99 % quantile of a call of each controller in its first flight, s."""
+        """Return the 99 % quantile of the call duration of each controller in its first flight."""
         outcomes = self._fly_trials([Trial(i) for i in range(len(self._plan.control.controllers))])
         return [outcome.slow_call if outcome.flew else nan for outcome in outcomes]
 
@@ -247,7 +249,7 @@ class _Flights:
         flights = [partial(trial.make_plan, self._plan) for trial in trials]
         tasks: List[Sequence[int]] = [[i] for i in range(len(trials))]
         if together:
-            # A kick is one more change of the state, so kicked flights share no batch with others.
+            # A kick changes the state once more, so kicked and other flights cannot share a batch.
             kinds = [[i for i, t in enumerate(trials) if t.kicked == kicked] for kicked in (0, 1)]
             tasks = [group for rows in kinds for group in self._share_out(rows)]
         self._fly_tasks(flights, outcomes, tasks, watch=True)
@@ -257,7 +259,7 @@ class _Flights:
         return share_out(rows, self._plan.options.processes or count_cores())
 
     def _group_other_seeds(self) -> List[Sequence[int]]:
-        """Group the seeds after the first that a vectorized controller commands together."""
+        """Group the seeds after the first one, as many as a vectorized controller takes at once."""
         tasks: List[Sequence[int]] = []
         for first, *others in split(range(len(self._plan)), len(self._plan.seeds)):
             together = MOST_VECTORIZED if self.outcomes[first].is_vectorized else 1
@@ -272,10 +274,11 @@ class _Flights:
         drawn: Collection[int] = (),
         watch: bool = False,
     ) -> None:
-        """Simulate flights, those of a task together.
+        """Simulate flights; the flights of one task run together.
 
-        Flights in `drawn` keep their logs, and all their motion if watched. The metrics of
-        user-defined controllers are computed in this process, which does not run their code.
+        Flights in `drawn` keep their logs; `watch` keeps the motion of all flights. This process
+        computes the metrics of flights with user-defined controllers, because it does not run user
+        code.
         """
         options, criteria = self._plan.options, self._plan.criteria
         expected = len(self._plan) + (self._searches.expected if self._searches else 0)
@@ -325,7 +328,7 @@ class _Flights:
 
 
 def _contain(function: Callable[[Any], Any], argument: Any) -> Any:
-    """Call a function, and return the outcome of an error instead of raising it."""
+    """Call a function, and convert an error into an outcome."""
     try:
         return contain_errors(function)(argument)
     except QuadcoreError as error:
@@ -333,16 +336,16 @@ def _contain(function: Callable[[Any], Any], argument: Any) -> Any:
 
 
 def _describe_error(error: QuadcoreError) -> Outcome:
-    """Return the outcome of a flight with an error."""
+    """Convert the error of a flight into an outcome."""
     return Outcome(str(error), refused=isinstance(error, InputError))
 
 
 def _compute_poles(plan: Plan) -> List[Dict[str, Any]]:
-    """Compute the poles of all cascaded controllers on each model in the first scenario."""
+    """Compute the poles of all cascaded controllers on each model, in the first scenario."""
     rows: List[Dict[str, Any]] = []
     for names, flight in plan.list_built_in_flights():
         if has_poles(flight.controller):
-            with suppress(QuadcoreError):  # chapter 2 cannot describe every vehicle
+            with suppress(QuadcoreError):  # chapter 2 does not cover every vehicle
                 found = compute_poles(
                     flight.controller, replace(flight, on_reference=False).simulation()
                 )
@@ -351,9 +354,10 @@ def _compute_poles(plan: Plan) -> List[Dict[str, Any]]:
 
 
 def _pick_drawn(plan: Plan) -> Set[int]:
-    """Return the rows to draw: first seeds of all flights on evenly spaced conditions.
+    """Return the rows to draw: the first seed of all flights on evenly spaced conditions.
 
-    The conditions are pairs of reference and point, as many as have at most `_DRAWN` flights.
+    A condition is a pair of reference and point. At most `_DRAWN` flights are drawn, but at least
+    one condition.
     """
     pairs = [(case.reference, case.point) for case in plan]
     every = list(dict.fromkeys(pairs))

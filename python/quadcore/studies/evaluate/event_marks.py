@@ -1,4 +1,4 @@
-"""Marks of scenario events in plots over time."""
+"""Markers for scenario events in plots over time."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ def mark_events(figure: Any, events: Sequence[Event]) -> None:
     Parameters
     ----------
     figure
-        Plots over time.
+        Figure with plots over time.
     events
-        Events of the scenario of the flights.
+        Events of the scenario.
     """
     texts: Dict[float, List[str]] = {}
     for event in events:

@@ -12,13 +12,13 @@ from .poles import describe_yaw_zero, find_yaw_zero
 
 
 def explain_failures(evaluation: Evaluation, plan: Plan) -> List[str]:
-    """Describe the zero in yaw of each model with failed flights that has one, a line for each."""
+    """Describe the right-half-plane yaw zero of each model with failed flights, one line each."""
     found = {}
     for row, flight in enumerate(evaluation.table):
         if flight["failure"] not in ("", NOT_FLOWN) and flight["model"] not in found:
             try:
                 vehicle = plan.make_plan_of_row(row).simulation()
-            except QuadcoreError:  # which was the failure
+            except QuadcoreError:  # the flight failed for the same reason
                 continue
             found[flight["model"]] = describe_yaw_zero(find_yaw_zero(vehicle))
     return [f"{model}: {text}" for model, text in found.items() if text]

@@ -1,7 +1,7 @@
-"""Confidence intervals, tests and conditional value at risk of means over seeds.
+"""Confidence intervals, tests and conditional value at risk (CVaR) over seeds.
 
-Student's t distribution gives the intervals and tests: for few seeds, a percentile bootstrap covers
-much less than it states (50 % instead of 95 % with two seeds).
+Intervals and tests use Student's t distribution. With few seeds, a percentile bootstrap covers much
+less than its nominal level (50 % instead of 95 % with two seeds).
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from ..tracking_metrics import EQUAL
 
 CONFIDENCE = 0.95
 WORST = 0.1
-"""Share of the worst seeds; their mean is the conditional value at risk."""
+"""Fraction of the seeds with the worst values; their mean is the conditional value at risk."""
 
 
 def compute_interval(values: np.ndarray) -> Tuple[float, float]:
-    """Return Student's interval of the mean; NaN for fewer than two values.
+    """Return Student's confidence interval of the mean; NaN for fewer than two values.
 
     To compare two controllers, pass the differences for each seed.
     """
@@ -33,9 +33,9 @@ def compute_interval(values: np.ndarray) -> Tuple[float, float]:
 
 
 def compute_p_value(values: np.ndarray) -> float:
-    """Return the two-sided p-value of a zero mean (Student's t test); NaN for one value or none.
+    """Return the two-sided p-value of a zero mean (Student's t test); NaN below two values.
 
-    Differences that are equal for all seeds are certain: 0, or 1 if they are below `EQUAL`.
+    If the values are equal for all seeds, the p-value is 0, or 1 if they are below `EQUAL`.
     """
     if len(values) < 2:
         return math.nan
@@ -48,14 +48,14 @@ def compute_p_value(values: np.ndarray) -> float:
 
 
 def compute_effect_size(differences: np.ndarray) -> float:
-    """Return Cohen's d of paired differences: mean over deviation; NaN for fewer than two."""
+    """Return Cohen's d of paired differences (mean / deviation); NaN for fewer than two values."""
     if len(differences) < 2 or np.ptp(differences) < EQUAL:
         return math.nan
     return float(differences.mean() / differences.std(ddof=1))
 
 
 def adjust_p_values(p_values: Sequence[float]) -> List[float]:
-    """Adjust p-values of several comparisons (Holm, Scand. J. Statistics 6, 1979); NaN remains."""
+    """Adjust p-values for multiple comparisons (Holm, Scand. J. Statistics 6, 1979); NaN stays."""
     found = np.array(p_values, dtype=float)
     known = np.flatnonzero(~np.isnan(found))
     order = known[np.argsort(found[known], kind="stable")]
@@ -65,7 +65,7 @@ def adjust_p_values(p_values: Sequence[float]) -> List[float]:
 
 
 def compute_cvar(values: np.ndarray) -> float:
-    """Return the conditional value at risk: the mean of the worst tenth, at least of one value."""
+    """Return the conditional value at risk: the mean of the highest 10 % (at least one value)."""
     if len(values) == 0:
         return math.nan
     count = max(1, math.ceil(WORST * len(values) - 1e-9))

@@ -1,4 +1,4 @@
-"""Linear loops of the cascaded controllers around hover, with the drag of the air."""
+"""Linear loops of the cascaded controllers around hover, including air drag."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from .loop_margins import find_margins
 if TYPE_CHECKING:
     from ...thesis.chapter2 import Vehicle
 
-_TWIST = 1e-3  # m/s, rad/s; of the differences that give the drag
+_TWIST = 1e-3  # m/s, rad/s; step of the central differences that give the drag
 _FREQUENCIES = np.geomspace(1e-2, 1e3, 4000)  # rad/s
 
 
 class Loop(NamedTuple):
-    """Feedback u = C x around a plant dx/dt = A x + B u; u is the demand to the motors."""
+    """Feedback u = C x around a plant dx/dt = A x + B u, where u is the demand to the motors."""
 
     plant: np.ndarray
-    """A, (n, n)."""
+    """Matrix A, shape (n, n)."""
     entry: np.ndarray
-    """B, (n,)."""
+    """Vector B, shape (n,)."""
     demand: np.ndarray
-    """C, (n,)."""
+    """Vector C, shape (n,)."""
 
     def find_poles(self) -> np.ndarray:
         """Return the poles of the closed loop, 1/s."""
@@ -33,25 +33,26 @@ class Loop(NamedTuple):
         return poles
 
     def compute_response(self, frequencies: np.ndarray) -> np.ndarray:
-        """Return the loop gain -C (jw - A)^-1 B at some frequencies, rad/s."""
+        """Return the loop gain -C (jw - A)^-1 B at some angular frequencies (rad/s)."""
         systems = 1j * frequencies[:, None, None] * np.eye(len(self.entry)) - self.plant
         states = np.linalg.solve(systems, self.entry[None, :, None].astype(complex))
         response: np.ndarray = -(states[..., 0] @ self.demand)
         return response
 
     def find_delay_margin(self) -> float:
-        """Return the delay of the demand that makes a stable loop unstable, s."""
+        """Return the smallest additional delay of the demand that destabilises a stable loop, s."""
         return find_margins(_FREQUENCIES, self.compute_response(_FREQUENCIES)).delay_margin
 
 
 def measure_drag(simulation: Simulation) -> np.ndarray:
-    """Measure the drag of the air on a vehicle with rotors at hover speed.
+    """Measure the air drag of a vehicle with rotors at hover speed.
 
     Returns
     -------
     ndarray, shape (6, 6)
-        Wrench (force, torque about the centre of mass) per twist (velocity of the centre of mass,
-        angular velocity), body axes, with the sign turned; N, N m per m/s, rad/s.
+        Negative wrench per twist in body axes. The wrench is the force (N) and the torque about the
+        centre of mass (N m). The twist is the velocity of the centre of mass (m/s) and the angular
+        velocity (rad/s).
     """
     columns = []
     state = simulation.state.copy()
@@ -75,16 +76,16 @@ def measure_drag(simulation: Simulation) -> np.ndarray:
 def make_loops(
     gains: Mapping[str, float], vehicle: Vehicle, drag: np.ndarray, lag: float
 ) -> Dict[str, Loop]:
-    """Make the loops of position and angles, those of x and y for the slower one of both.
+    """Make the position and attitude loops; x, y and roll, pitch give the slower of two axes.
 
     Parameters
     ----------
     gains
-        As `read_gains` returns them.
+        Parameters of the controller, as returned by `read_gains`.
     vehicle
         Parameters of the vehicle.
     drag
-        As of `measure_drag`.
+        Drag matrix, as returned by `measure_drag`.
     lag
         Time constant of the thrusts and torques, s.
     """
@@ -105,7 +106,7 @@ def _make_tilt_loops(
     about: int,
     sign: int,
 ) -> Dict[str, Loop]:
-    """Make the loops of one horizontal axis and of the tilt that accelerates along it."""
+    """Make the loops of one horizontal axis and of the tilt angle that accelerates along it."""
     names = ("x_sum", "x", "v", "tilt_sum", "tilt", "rate", "torque")
     one = dict(zip(names, np.eye(len(names))))
     force = -drag[along, along] * one["v"] - sign * drag[along, about] * one["rate"]
@@ -149,10 +150,10 @@ def _make_height(
 def make_yaw(
     gains: Mapping[str, float], vehicle: Vehicle, drag: np.ndarray, lag: float, zero: float
 ) -> Loop:
-    """Make the loop of yaw; parameters as of `make_loops`.
+    """Make the yaw loop; parameters as for `make_loops`.
 
-    A finite `zero` (1/s) stands for the reaction to the rotors' acceleration. A vehicle that begins
-    to yaw then leaves its rotors behind, which changes their speed and the torque of the air.
+    A finite `zero` (1/s) models the reaction to the acceleration of the rotors. When the vehicle
+    starts to yaw, the rotors lag behind, which changes their relative speed and the air torque.
     """
     inertia = vehicle.inertia[2, 2]
     air = drag[5, 5] / inertia
@@ -169,7 +170,7 @@ def _make_plain(
     zero: float = math.inf,
     behind: float = 0.0,
 ) -> Loop:
-    """Make the loop of a value that the rotors accelerate directly, against the air."""
+    """Make the loop of a coordinate that the rotors accelerate directly, with air drag."""
     names = ("sum", "value", "rate", "push")
     one = dict(zip(names, np.eye(len(names))))
     demand = _pid(gains, axis, one["sum"], one["value"], one["rate"]) + compensated * one["rate"]
@@ -191,7 +192,7 @@ def _make_plain(
 
 
 def _pid(gains: Mapping[str, float], axis: str, total: Any, value: Any, rate: Any) -> np.ndarray:
-    """Return the demand for a value that shall be 0; `total` is the integral of the error."""
+    """Return the demand that drives a value to 0; `total` is the integral of its error."""
     p, i, d = (gains["scale"] * gains[f"k{part}_{axis}"] for part in "pid")
     demand: np.ndarray = -p * value + i * total - d * rate
     return demand
@@ -204,6 +205,6 @@ def _pick(
     entry: np.ndarray,
     demand: np.ndarray,
 ) -> Loop:
-    """Make a loop of some states."""
+    """Make a loop from a subset of the states."""
     at = [names.index(name) for name in kept]
     return Loop(np.array([rates[name][at] for name in kept]), entry[at], demand[at])

@@ -1,4 +1,4 @@
-"""Margins of a loop from its frequency response."""
+"""Stability margins of a loop from its frequency response."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ import numpy as np
 
 
 class LoopMargins(NamedTuple):
-    """Margins of a stable loop; infinite or 0 where the response does not limit them."""
+    """Margins of a stable loop; infinite or 0 where the measured response contains no limit."""
 
     crossover: float
-    """Frequency of the crossover with the smallest delay margin, rad/s; NaN without one."""
+    """Frequency of the crossover with the smallest delay margin, rad/s; NaN without a crossover."""
     phase_margin: float
-    """Minimum phase margin of all crossovers, rad."""
+    """Smallest phase margin of all crossovers, rad."""
     delay_margin: float
-    """Minimum delay that makes the loop unstable, s."""
+    """Smallest delay that makes the loop unstable, s."""
     gain_low: float
-    """Maximum factor below 1 on the gain that makes the loop unstable."""
+    """Maximum gain factor below 1 that makes the loop unstable."""
     gain_high: float
-    """Minimum factor above 1 on the gain that makes the loop unstable."""
+    """Smallest gain factor above 1 that makes the loop unstable."""
 
 
 def find_margins(frequencies: np.ndarray, response: np.ndarray) -> LoopMargins:
-    """Find the margins of a loop gain L with the characteristic equation 1 + L = 0.
+    """Find the margins of a loop gain L, with the characteristic equation 1 + L = 0.
 
     Parameters
     ----------
     frequencies : ndarray (n,)
-        Ascending frequencies, rad/s.
+        Frequencies in ascending order, rad/s.
     response : ndarray (n,)
-        Loop gain at these frequencies.
+        Complex loop gain at these frequencies.
     """
     found = list(find_crossovers(frequencies, response))
     delays = [(phase + math.pi) % (2 * math.pi) / frequency for frequency, phase in found]
@@ -47,7 +47,7 @@ def find_margins(frequencies: np.ndarray, response: np.ndarray) -> LoopMargins:
 
 
 def find_crossovers(frequencies: np.ndarray, response: np.ndarray) -> Iterator[Tuple[float, float]]:
-    """Yield frequency (rad/s) and phase (rad) where the gain is 1, by linear interpolation."""
+    """Yield frequency (rad/s) and phase (rad) at each unit gain, by linear interpolation."""
     sizes, phases = np.log(np.abs(response)), np.unwrap(np.angle(response))
     for i in np.flatnonzero(sizes[:-1] * sizes[1:] < 0):
         part = sizes[i] / (sizes[i] - sizes[i + 1])
@@ -56,7 +56,7 @@ def find_crossovers(frequencies: np.ndarray, response: np.ndarray) -> Iterator[T
 
 
 def _find_factors(response: np.ndarray) -> Iterator[float]:
-    """Yield the factors that move a crossing of the negative real axis to -1."""
+    """Yield the gain factors that move a crossing of the negative real axis to -1."""
     imaginary, sizes = response.imag, np.log(np.abs(response))
     for i in np.flatnonzero(imaginary[:-1] * imaginary[1:] < 0):
         part = imaginary[i] / (imaginary[i] - imaginary[i + 1])

@@ -20,18 +20,18 @@ def draw_loops(
     styles: Mapping[str, int],
     above: float,
 ) -> Figure:
-    """Draw gain and phase of the loops, a row of panels for each axis.
+    """Draw gain and phase of the loops, with a row of panels for each axis.
 
     Parameters
     ----------
     loops
-        Rows of `measure_loops`.
+        Rows as returned by `measure_loops`.
     label
-        Returns the label of a row.
+        Function that returns the label of a row.
     styles
-        Number of the `curve_style` of each label.
+        Index of the `curve_style` for each label.
     above
-        Room for title and legend, inches.
+        Height of the space for title and legend, inches.
     """
     figure, grid = panels("Measured loop gain in hover", len(AXES), 2, above=above)
     for (gain, phase), axis in zip(grid, AXES):
@@ -52,7 +52,7 @@ def draw_loops(
 
 
 def _center(phases: Sequence[float]) -> np.ndarray:
-    """Shift phases by whole turns, so that their median lies within half a turn of -180 degrees."""
+    """Shift phases by multiples of 360 degrees, so that their median is near -180 degrees."""
     median = float(np.median(phases))
     turns = np.round((median + np.pi) / (2 * np.pi))
     centered: np.ndarray = np.asarray(phases) - 2 * np.pi * turns

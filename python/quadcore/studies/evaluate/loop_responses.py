@@ -1,10 +1,10 @@
-"""Frequency responses of the loops in hover, measured by injection at the plant input.
+"""Frequency responses of the loops in hover, measured with injection at the plant input.
 
-A multisine is added to one component of the wrench that the controller commands: thrust, or the
-torque about an axis. With the commanded component c and the injected one d, the plant receives
-u = c + d. The loop gain is L = -C/U and the sensitivity S = U/D = 1/(1 + L), from the Fourier
-coefficients at the injected frequencies. The other components stay under control, so that the loops
-of roll and pitch contain those of y and x.
+A multisine is added to one component of the wrench that the controller commands: the thrust, or the
+torque about an axis. With the commanded component c and the injected component d, the plant
+receives u = c + d. The loop gain is L = -C/U and the sensitivity is S = U/D = 1/(1 + L), from the
+Fourier coefficients at the injected frequencies. The other components remain under control, so the
+loops of roll and pitch include those of y and x.
 
 Reference: J. Schoukens, R. Pintelon, System Identification: A Frequency Domain Approach, 2nd ed.,
 2012, chapters 2 and 7. M. R. Schroeder, Synthesis of low-peak-factor signals, IEEE Transactions on
@@ -40,31 +40,31 @@ AXES = ("z", "roll", "pitch", "yaw")
 """Loops, in the order of the rows of `Vehicle.allocation`."""
 
 _LINEAR = {"z": "z", "roll": "x, y", "pitch": "x, y", "yaw": "yaw"}
-"""Axis of `compute_poles` with the same loop."""
+"""Axis of `compute_poles` that corresponds to each loop."""
 
-_PERIOD = 20.0  # s; of the multisine
-_SETTLE = 20.0  # s; before the first row that counts
-_LINES = 60  # frequencies
-_FASTEST = 40.0  # Hz, and at most a quarter of the rate of the controller
-_SIZE = 0.01  # RMS of the injected component, of the sum of the rotors' shares of it in hover
-_REJECTED = math.sqrt(0.5)  # |S| at the end of the band in which disturbances are rejected
+_PERIOD = 20.0  # s; period of the multisine
+_SETTLE = 20.0  # s; settling time before the first evaluated row
+_LINES = 60  # number of frequencies
+_FASTEST = 40.0  # Hz; the maximum frequency, at most a quarter of the controller's rate
+_SIZE = 0.01  # RMS of the injection, relative to the sum of the rotors' shares in hover
+_REJECTED = math.sqrt(0.5)  # |S| at the upper end of the disturbance rejection band
 
 NAMES = (
     "crossover", "phase_margin", "gain_low", "gain_high", "delay_margin", "linear_delay_margin",
     "rejection_band", "rejection_peak",
 )  # fmt: skip
-"""Numbers of each loop: rad/s, rad, factors, s, s, rad/s, and the maximum of \\|S\\|."""
+"""Results for each loop: rad/s, rad, factors, s, s, rad/s, and the maximum of \\|S\\|."""
 
 
 class Response(NamedTuple):
     """Measured response of a loop."""
 
     frequencies: np.ndarray
-    """rad/s; (n,)."""
+    """Frequencies, rad/s; shape (n,)."""
     loop: np.ndarray
-    """L, complex; (n,)."""
+    """Complex loop gain L, shape (n,)."""
     sensitivity: np.ndarray
-    """S, complex; (n,)."""
+    """Complex sensitivity S, shape (n,)."""
 
 
 def measure_loops(plan: Plan, poles: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
@@ -75,13 +75,13 @@ def measure_loops(plan: Plan, poles: Sequence[Mapping[str, Any]]) -> List[Dict[s
     plan
         Plan of the evaluation.
     poles
-        Rows of `compute_poles` with the names of controller, model and engine.
+        Rows of `compute_poles`, with the names of controller, model and engine.
 
     Returns
     -------
     list of dict
-        Row per controller, engine, model and axis: ``failure``, the numbers `NAMES`, and the lists
-        ``frequencies`` (rad/s), ``gain`` and ``phase`` (rad) of the loop.
+        Row per controller, engine, model and axis: ``failure``, the values of `NAMES`, and the
+        lists ``frequencies`` (rad/s), ``gain`` and ``phase`` (rad) of the loop.
     """
     cases = [
         (Case(i, engine=engine, model=model), axis)
@@ -126,7 +126,7 @@ def _summarise(found: Union[Response, QuadcoreError], linear: float) -> Dict[str
 
 
 def _find_linear(names: Mapping[str, str], poles: Sequence[Mapping[str, Any]]) -> float:
-    """Return the delay margin of the linear loop, s; NaN without one."""
+    """Return the delay margin of the linear loop, s; NaN if it is unknown."""
     for row in poles:
         is_loop = row["axis"] == _LINEAR[names["axis"]]
         is_same = all(row[name] == names[name] for name in ("controller", "model"))
@@ -136,7 +136,7 @@ def _find_linear(names: Mapping[str, str], poles: Sequence[Mapping[str, Any]]) -
 
 
 def _find_band(frequencies: np.ndarray, sizes: np.ndarray) -> float:
-    """Return the frequency up to which disturbances are rejected, rad/s; NaN without one."""
+    """Return the bandwidth of disturbance rejection, rad/s; NaN if it is outside the range."""
     beyond = np.flatnonzero(sizes > _REJECTED)
     if not len(beyond) or beyond[0] == 0:
         return math.nan
@@ -146,7 +146,7 @@ def _find_band(frequencies: np.ndarray, sizes: np.ndarray) -> float:
 
 
 def _measure(plan: Plan, case: Case, axis: int) -> Response:
-    """Measure the response of one loop; raises `QuadcoreError` if the flight fails."""
+    """Measure the response of one loop; raise `QuadcoreError` if the flight fails."""
     hover = references.make_hover(check_pose(SPAWN))
     flight = replace(plan.make_plan(case), reference=hover, duration=_SETTLE + _PERIOD)
     if isinstance(flight.controller, PluginController):
@@ -166,7 +166,7 @@ def _measure(plan: Plan, case: Case, axis: int) -> Response:
 
 
 class _Injection:
-    """Wrap a controller, and add a multisine to one component of its wrench."""
+    """Wrap a controller to add a multisine to one component of its wrench."""
 
     def __init__(self, controller: Any, axis: int) -> None:
         check_callable(controller)
@@ -177,7 +177,7 @@ class _Injection:
         highest = min(_FASTEST, rate / 4) * _PERIOD
         lines = np.unique(np.round(np.geomspace(1, highest, _LINES)))
         self._frequencies = 2 * np.pi * lines / _PERIOD
-        # Phases of Schroeder (1970) for equal amplitudes, which keep the peaks low.
+        # The phases of Schroeder (1970) for equal amplitudes keep the crest factor low.
         order = np.arange(1, len(lines) + 1)
         self._phases = -np.pi * order * (order - 1) / len(lines)
 
@@ -187,7 +187,7 @@ class _Injection:
         return getattr(self._controller, name)
 
     def reset(self, simulation: Any) -> None:
-        """Reset the controller, and describe the vehicle."""
+        """Reset the controller, and read the properties of the vehicle."""
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             reset(simulation)
@@ -201,7 +201,7 @@ class _Injection:
         self._size = _SIZE * in_hover * math.sqrt(2 / len(self._frequencies))
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
-        """Return the command of the controller with the injected component."""
+        """Return the controller's command plus the injected component."""
         speeds = self._call(t, state, reference)
         squares = self._spins * speeds * np.abs(speeds)
         injected = self._size * float(np.cos(self._frequencies * t + self._phases).sum())
@@ -224,7 +224,7 @@ class _Injection:
         return np.asarray(speeds, dtype=float)
 
     def compute_response(self) -> Response:
-        """Compute the response from the calls of the last period, by least squares."""
+        """Compute the response from the last period by least squares."""
         rows = np.array([row for row in self._rows if row[0] >= _SETTLE - 1e-9])
         times = rows[:, 0]
         angles = np.outer(times, self._frequencies)

@@ -20,11 +20,11 @@ HEADINGS = {
     "rejection_band": "rejection up to (rad/s)",
     "rejection_peak": "max S",
 }
-"""Headings of the columns, by name."""
+"""Heading of each column."""
 
 
 def choose_headings(loops: Sequence[Mapping[str, Any]]) -> Dict[str, str]:
-    """Return the headings to show; engine and model are left out if all rows share them."""
+    """Return the headings to show; engine and model are omitted if all rows share them."""
     return {
         name: heading
         for name, heading in HEADINGS.items()
@@ -33,7 +33,7 @@ def choose_headings(loops: Sequence[Mapping[str, Any]]) -> Dict[str, str]:
 
 
 def format_loops(loops: Sequence[Mapping[str, Any]]) -> List[Dict[str, str]]:
-    """Format the rows of `measure_loops`; a failed one has its reason instead of the crossover."""
+    """Format the rows of `measure_loops`; a failed row shows its reason, not the crossover."""
     return [_format(row) for row in loops]
 
 
@@ -48,12 +48,12 @@ def _format(row: Mapping[str, Any]) -> Dict[str, str]:
 
 
 def _write(value: float) -> str:
-    """Format a number; "" if it is infinite or not known."""
+    """Format a number; "" if it is infinite or NaN."""
     return format_number(value) if math.isfinite(value) else ""
 
 
 def make_plain(row: Mapping[str, Any]) -> Dict[str, Any]:
-    """Replace numbers that JSON cannot represent by None."""
+    """Replace infinity and NaN, which JSON cannot represent, by None."""
     return {
         name: None if isinstance(value, float) and not math.isfinite(value) else value
         for name, value in row.items()

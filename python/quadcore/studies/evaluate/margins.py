@@ -1,12 +1,13 @@
 """Margins of a controller: gain, delay, update rate, and model errors.
 
-Gain and delay are scanned from the nominal value outwards; the first loss is the margin. Each value
-is simulated twice, with and without an initial disturbance (`KICK`). It is lost if a flight fails,
-or if the difference of both flights does not decay: a vehicle in equilibrium shows no instability.
+Gain and delay are scanned from the nominal value outwards; the margin ends at the first unstable
+value. Each value is simulated twice, with and without an initial disturbance (`KICK`). It counts as
+unstable if a flight fails, or if the difference between the flights does not decay. The disturbance
+is needed because a vehicle in equilibrium shows no instability.
 
 The controller has the nominal model of the vehicle, while thrust, drag and motor lag of the
-simulated vehicle are scaled. Built-in controllers receive the nominal model directly, user-defined
-ones in `reset`.
+simulated vehicle are scaled. Built-in controllers receive the nominal model directly, and
+user-defined controllers receive it in `reset`.
 """
 
 from __future__ import annotations
@@ -37,27 +38,27 @@ from .trial import KICK, Trial
 LARGEST_GAIN = 10.0
 LARGEST_DELAY = 0.5  # s
 ENDS = {"gain_low": 1 / LARGEST_GAIN, "gain_high": LARGEST_GAIN, "delay_margin": LARGEST_DELAY}
-"""Ends of the search range; a margin at an end may exceed it."""
+"""Ends of the search range. If a search reaches an end, the margin may be larger."""
 RATES = (1000.0, 500.0, 250.0, 125.0, 100.0, 50.0, 25.0)  # 1/s
 BOX = {"thrust": 0.1, "drag": 0.5, "lag": 0.3}
-"""Relative model errors: the corners of this box and random points inside are simulated."""
+"""Relative model errors. The corners of this box and random points inside it are simulated."""
 
 NAMES = (*ENDS, *(f"rms_at_{rate:g}_Hz" for rate in RATES), "box_median", "box_worst")
 
-_GAINS = 24  # steps of a scan to the end of the range: 10 % each
-_GAIN_WIDTH = 0.015  # relative, of the last interval
-_FINE = 0.001  # s; steps of a scan of the delay
-_FINE_UNTIL = 0.05  # s
-_COARSE = 0.05  # relative; steps beyond
-_DELAY_WIDTH = 5e-4  # s, of the last interval
-_ROUND = 6  # values of a scan that are simulated together
-_SAMPLES = 16  # random points in the box
-_TRIALS = 120  # per controller, about
+_GAINS = 24  # number of steps of a gain scan; each is 10 %
+_GAIN_WIDTH = 0.015  # relative width of the final interval
+_FINE = 0.001  # s; step of the delay scan
+_FINE_UNTIL = 0.05  # s; end of the fine steps
+_COARSE = 0.05  # relative step beyond
+_DELAY_WIDTH = 5e-4  # s; width of the final interval
+_ROUND = 6  # number of scan values that are simulated together
+_SAMPLES = 16  # number of random points in the box
+_TRIALS = 120  # approximate number of flights per controller
 NOT_DECAYED = (
     "the initial disturbance does not decay in the nominal flight. Use a stable controller and a "
     "longer duration."
 )
-"""Reason for a controller without margins."""
+"""Failure of a controller without margins."""
 
 _DECAYED = 0.05  # of the initial disturbance; less is rounding noise of the controller
 _METRIC = "rms_position"
@@ -68,16 +69,16 @@ Fly = Callable[[List[Trial]], List[Outcome]]
 
 
 class MarginSearch:
-    """Search for the margins of controllers, on the first reference, engine, model and scenario.
+    """Search for the margins of controllers with the first reference, engine, model and scenario.
 
     Parameters
     ----------
     controllers
         Names of the controllers.
     lacking
-        Effects that no tag of the vehicle scales; see `list_missing_effects`.
+        Effects that no tag of the vehicle can scale; see `list_missing_effects`.
     plugins
-        Indices of the controllers that are plugins; only their delay margin is searched.
+        Indices of plugin controllers, for which only the delay margin is searched.
     """
 
     def __init__(
@@ -123,7 +124,7 @@ class MarginSearch:
             self._rows[row]["failure"] = ""
 
     def list_rows(self) -> List[Dict[str, Any]]:
-        """Return a row per controller: `NAMES`, and the failure that prevented a search."""
+        """Return a row per controller: the values of `NAMES`, or the failure without a search."""
         return [dict(row) for row in self._rows]
 
     def _fly_new(self, fly: Fly, trials: Sequence[Trial]) -> Mapping[Trial, Outcome]:
@@ -140,7 +141,7 @@ class MarginSearch:
 
 
 def _search_gain(own: Trial) -> Search:
-    """Find the range of scaling of thrust and torque without loss."""
+    """Find the range of the thrust and torque factor in which the flights remain stable."""
 
     def at(logarithm: float) -> Trial:
         return own._replace(thrust=math.exp(logarithm))
@@ -154,7 +155,7 @@ def _search_gain(own: Trial) -> Search:
 
 
 def _search_delay(own: Trial) -> Search:
-    """Find the additional delay at which the first loss occurs, s."""
+    """Find the smallest additional delay that makes the flight unstable, s."""
     scan = [_FINE]
     while scan[-1] < LARGEST_DELAY:
         step = _FINE if scan[-1] < _FINE_UNTIL else _COARSE * scan[-1]
@@ -166,7 +167,7 @@ def _search_delay(own: Trial) -> Search:
 def _find_first_loss(
     at: Callable[[float], Trial], scan: Sequence[float], width: float
 ) -> Generator[List[Trial], List[Outcome], float]:
-    """Return the last value before the first loss of a scan from 0; the last one without a loss."""
+    """Return the stable value before the first unstable one of a scan from 0, or the last value."""
     good, bad = 0.0, math.nan
     for start in range(0, len(scan), _ROUND):
         values = scan[start : start + _ROUND]
@@ -184,16 +185,16 @@ def _find_first_loss(
 
 
 def _judge(trials: Sequence[Trial]) -> Generator[List[Trial], List[Outcome], List[bool]]:
-    """Find which trials are lost."""
+    """Simulate trials, and return which of them are unstable."""
     outcomes = yield [each._replace(kicked=kicked) for each in trials for kicked in (False, True)]
     return [is_lost(*pair) for pair in zip(outcomes[::2], outcomes[1::2])]
 
 
 def is_lost(plain: Outcome, kicked: Outcome) -> bool:
-    """Whether a flight without or with the initial disturbance fails, or its effect does not decay.
+    """Whether a flight fails with or without the disturbance, or the effect does not decay.
 
-    Velocities and angular velocities are judged apart. The effect must decay from the third to the
-    last quarter of the flight, and lie below that in the first quarter.
+    Linear and angular velocities are compared separately. The RMS effect in the last quarter of the
+    flight must be below those in the first and third quarters.
     """
     if not (plain.flew and kicked.flew):
         return True
@@ -206,13 +207,13 @@ def is_lost(plain: Outcome, kicked: Outcome) -> bool:
 
 
 def _sweep_rates(own: Trial) -> Search:
-    """Find the error at each update rate; NaN after a failure."""
+    """Find the tracking error at each update rate; NaN after a failure."""
     outcomes = yield [own._replace(rate=rate) for rate in RATES]
     return {f"rms_at_{r:g}_Hz": o.measures[_METRIC] for r, o in zip(RATES, outcomes)}
 
 
 def _sample_model_errors(own: Trial) -> Search:
-    """Find worst and median error under model errors; the worst is infinite after a failure."""
+    """Find the worst and median error with model errors; a failure counts as infinite."""
     corners = list(itertools.product(*((1 - part, 1 + part) for part in BOX.values())))
     inside = np.random.default_rng(0).uniform(-1, 1, (_SAMPLES, len(BOX)))
     points = [*corners, *(1 + inside * np.array(list(BOX.values()))).tolist()]
@@ -225,7 +226,7 @@ def _sample_model_errors(own: Trial) -> Search:
 
 
 class _Kind(NamedTuple):
-    """Kind of margin: its search, and the effects of the vehicle that it scales."""
+    """Kind of margin: its search, and the vehicle effects that the search scales."""
 
     name: str
     search: Callable[[Trial], Search]
@@ -242,14 +243,14 @@ _KINDS = (
 
 
 def describe_omitted(model: str, lacking: Collection[str], plugins: Sequence[str]) -> str:
-    """State in one line the margins that cannot be searched; "" if all can.
+    """Describe in one line the margins that are not searched; "" if all are searched.
 
     Parameters
     ----------
     model, lacking
-        Name of the vehicle, and effects that none of its tags scales.
+        Name of the vehicle, and effects that none of its tags can scale.
     plugins
-        Names of the controllers that are plugins.
+        Names of the plugin controllers.
     """
     found = []
     left_out = [kind.name for kind in _KINDS if kind.varies & set(lacking)]
@@ -268,7 +269,7 @@ def describe_omitted(model: str, lacking: Collection[str], plugins: Sequence[str
 
 
 def format_margin(row: Mapping[str, Any], name: str, number: Callable[[float], str]) -> str:
-    """Format a margin; < or > marks one at an end of the search range."""
+    """Format a margin; < or > marks a value at the end of the search range."""
     value = row.get(name, math.nan)
     if value == ENDS.get(name):
         return f"{'<' if name == 'gain_low' else '>'} {number(value)}"

@@ -1,4 +1,4 @@
-"""Recorded flights in the tables of an evaluation."""
+"""Evaluation of recorded flights next to simulated ones."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ if TYPE_CHECKING:
     from ...control.references import ReferenceLike
 
 RECORDED = "recorded"
-"""Name of the engine of recorded flights in tables."""
+"""Engine name of recorded flights in tables."""
 
 File = Union[str, Path, Log]
 Files = Union[File, Sequence[File], Mapping[str, Union[File, Sequence[File]]]]
-"""One or several logs, or a mapping of labels to these. Logs of one label are repetitions."""
+"""One or several logs, or a mapping of labels to logs. Logs with one label are repetitions."""
 
 
 class Request(NamedTuple):
@@ -55,23 +55,23 @@ class Request(NamedTuple):
     """Label and log of each flight."""
     reference: Any
     controllers: Controllers
-    """Controllers to simulate as well."""
+    """Controllers to simulate in addition."""
     model: Union[str, Path]
     engine: AnyEngineName
     alignments: Sequence[Alignment]
-    """One for each log, or one for all."""
+    """One alignment for each log, or one for all logs."""
     mapping: Union[str, Path, None]
 
 
 class MeasurePlan(Plan):
-    """Plan of the simulated flights, with the recorded ones.
+    """Plan of the simulated flights, together with the recorded flights.
 
     Parameters
     ----------
     request
         Recorded flights.
     options
-        Options of the simulated flights. Default of the duration: that of the longest log.
+        Options of the simulated flights. The default duration is that of the longest log.
 
     Raises
     ------
@@ -93,7 +93,7 @@ class MeasurePlan(Plan):
                 "for all, or one for each."
             )
         described = _describe_vehicle(request, options)
-        with suppress_warnings():  # the plan gives them
+        with suppress_warnings():  # the plan gives these warnings
             vehicle = described.simulation()
         reference = make_reference(request.reference)
         known = reference.on(vehicle) if hasattr(reference, "on") else reference
@@ -124,11 +124,11 @@ class MeasurePlan(Plan):
         return super().__len__() if self.control.is_closed_loop else 0
 
     def make_plan_of_row(self, row: int) -> FlightPlan:
-        """Make a plan with vehicle and world of a row, without its controller."""
+        """Make a plan with the vehicle and world of a row, without its controller."""
         return self.make_plan_without_controller(self[row] if row < len(self) else Case())
 
     def name_recordings(self) -> List[Dict[str, Any]]:
-        """Return the first columns of the table for each recorded flight."""
+        """Return the values of the first table columns for each recorded flight."""
         counts: Dict[str, int] = {}
         names = []
         for each in self.recordings:
@@ -184,19 +184,19 @@ def measure(
     Parameters
     ----------
     logs
-        Files, or logs; or a mapping of labels to one or several of these. Logs with the same label
-        are repetitions. The label of a simulated controller puts both into one column.
+        Files or logs, or a mapping of labels to these. Logs with the same label are repetitions. If
+        a label is the name of a simulated controller, tables show both in one column.
     reference
-        Reference of the recorded flights.
+        Reference that the recorded flights followed.
     controllers
-        Controllers to simulate on the same reference, as for `evaluate`. Default: none.
+        Controllers to simulate with the same reference, as for `evaluate`. Default: none.
     align
-        Time in the log at which the reference begins, s, or ``"find"``: the alignment with the
-        minimum RMS tracking error. One for all logs, or one for each.
+        Time in the log at which the reference begins, s, or ``"find"`` for the alignment with the
+        minimum RMS tracking error. One value for all logs, or one for each.
     mapping
-        Columns of recordings of real flights, as for `Log.of_file`.
+        Names of the columns in recordings of real flights, as for `Log.of_file`.
     model
-        Vehicle of the logs.
+        Vehicle that the logs describe.
     engine
         Engine of the simulated flights.
     **options
@@ -204,9 +204,9 @@ def measure(
     Returns
     -------
     Evaluation
-        As of `evaluate`. The engine of a recorded flight is "recorded", and its seed counts the
-        logs of its label. Metrics that need more than the log, such as the share of saturated
-        updates, are NaN.
+        As for `evaluate`. The engine of a recorded flight is "recorded", and its seed is its index
+        among the logs with the same label. Metrics that require more than the log, such as the
+        share of saturated updates, are NaN.
 
     Raises
     ------
@@ -230,13 +230,13 @@ def measure(
 
 
 def measure_plan(plan: MeasurePlan, progress: Optional[Progress] = None) -> Evaluation:
-    """Simulate the flights of a plan, and add the recorded ones."""
+    """Simulate the flights of a plan, and add its recorded flights."""
     simulated = fly_plan(plan, progress) if len(plan) else Evaluation([], [], [], [], [])
     return add_recordings(simulated, plan)
 
 
 def add_recordings(simulated: Evaluation, plan: MeasurePlan) -> Evaluation:
-    """Add the recorded flights of a plan to its simulated ones."""
+    """Add the recorded flights of a plan to the results of the simulated flights."""
     recorded = plan.name_recordings()
     labels = list(
         dict.fromkeys([*plan.control.controllers, *(name["controller"] for name in recorded)])
@@ -259,7 +259,7 @@ def add_recordings(simulated: Evaluation, plan: MeasurePlan) -> Evaluation:
 
 
 def label_logs(logs: Files) -> List[Tuple[str, File]]:
-    """Return label and log of each flight; the default label is the name of the file."""
+    """Return the label and log of each flight; the default label is the file name."""
     if isinstance(logs, Mapping):
         return [(str(label), one) for label, some in logs.items() for one in _to_list(some)]
     return [
@@ -276,7 +276,7 @@ def _to_list(logs: Any) -> List[File]:
 
 
 def _describe_vehicle(request: Request, options: MeasureOptions) -> FlightPlan:
-    with suppress_warnings():  # the plan gives them
+    with suppress_warnings():  # the plan gives these warnings
         return FlightPlan.of(
             request.model,
             options.world,

@@ -1,4 +1,4 @@
-"""Files of an evaluation: tables, plots, page."""
+"""Files of an evaluation: tables, plots and page."""
 
 from __future__ import annotations
 
@@ -59,17 +59,17 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     Parameters
     ----------
     evaluation, plan
-        Results and their plan.
+        Results, and the plan of the flights.
     folder
         Existing folder.
     plots
-        Whether to draw.
+        Whether to draw plots.
     """
     from ...report.page import write_page  # jinja2 is slow to import
 
     remove_plots(folder, "evaluation.json", is_plot)
     remove_flights(folder)
-    # Results first: further flights and drawing are slow and can fail.
+    # The tables come first, because additional flights and drawing are slow and can fail.
     content = {**_make_content(evaluation, plan), "step_error": None}
     tables = {
         "table.csv": make_csv(_table_rows(evaluation.table)),
@@ -98,7 +98,7 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
 
 
 def _describe_omitted_flights(evaluation: Evaluation) -> str:
-    """State which figures are missing; "" if there is one per reference and scenario."""
+    """Describe which plots are omitted; "" if every reference and scenario is shown."""
     shown = group_flights(evaluation)
     every = dict.fromkeys((row["reference"], row["scenario"]) for row in evaluation.table)
     missing = [name_group(evaluation, *pair) for pair in every if pair not in shown]
@@ -142,7 +142,7 @@ def summarise(evaluation: Evaluation) -> str:
 
 
 def list_notes(evaluation: Evaluation) -> List[str]:
-    """Return what the seeds permit, and the ranks of the controllers, in a few lines."""
+    """Describe the limitations of the seeds and the ranks of the controllers, one line each."""
     ranks = describe_ranks(rank_controllers(evaluation.groups), CONFIDENCE)
     return [*describe_seeds(evaluation.groups), *ranks]
 
@@ -155,7 +155,7 @@ def _describe_ranks(evaluation: Evaluation) -> Dict[str, Any]:
 
 
 def list_unstable_axes(evaluation: Evaluation) -> List[str]:
-    """List the unstable axes of cascaded controllers with pole and cause."""
+    """List the unstable axes of cascaded controllers, with pole and cause."""
     return [
         f"{row['controller']} ({row['engine']}), {row['axis']}: pole at {poles_text(row, 1)} 1/s"
         + (f"; cause: {row['because']}" if row["because"] else "")
@@ -225,7 +225,7 @@ def _replace_infinity(row: Mapping[str, Any]) -> Dict[str, Any]:
 
 
 def format_margins(evaluation: Evaluation) -> List[Dict[str, str]]:
-    """Format the rows of the margins for the terminal and the page."""
+    """Format the margins of each controller for the terminal and the page."""
     return [
         {
             name: value if isinstance(value, str) else format_margin(row, name, format_error)

@@ -1,4 +1,4 @@
-"""Overview of an evaluation: a sentence for each cell, and a table with controllers as columns."""
+"""Overview of an evaluation: a sentence for each cell, and a table with a column per controller."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ _SENTENCES = 3
 
 
 class Overview(NamedTuple):
-    """Table with a row for each cell of the study, and a column for each controller."""
+    """Table with a row for each cell of the study and a column for each controller."""
 
     names: List[str]
-    """Parts of a cell that differ between cells, at least the reference."""
+    """Names that differ between cells, or only the reference."""
     controllers: List[str]
     rows: List[Tuple[List[str], List[Tuple[str, bool]]]]
-    """Names of the cell, then RMS tracking error and whether it is best, by controller."""
+    """Names of each cell; RMS tracking error and whether it is best, for each controller."""
 
 
 def make_overview(groups: Sequence[Mapping[str, Any]]) -> Overview:
@@ -38,14 +38,14 @@ def make_overview(groups: Sequence[Mapping[str, Any]]) -> Overview:
 
 
 def _describe_failures(group: Mapping[str, Any]) -> str:
-    """Count the failed flights of a group; "" if there are none."""
+    """Count the failed flights of a group; "" without failures."""
     if not group["failure_rate"] > 0:  # NaN if no flight ran
         return ""
     return f"{round(group['failure_rate'] * group['flights'])} of {group['flights']} failed"
 
 
 def describe_best(groups: Sequence[Mapping[str, Any]]) -> List[str]:
-    """Name the best controllers of each cell in a sentence; of many cells, the first ones."""
+    """Name the best controllers of each of the first cells in a sentence."""
     overview = make_overview(groups)
     if len(overview.controllers) < 2:
         return []

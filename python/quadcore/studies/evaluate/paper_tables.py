@@ -1,4 +1,4 @@
-"""Tables for papers: controllers as columns, as CSV and LaTeX."""
+"""Tables for papers, with controllers as columns, as CSV and LaTeX."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _SPECIAL = {**{c: f"\\{c}" for c in "&%$#_{}"}, "~": r"\textasciitilde{}",
 
 
 def make_rows(groups: Groups, units: Mapping[str, str] = UNITS) -> List[List[Any]]:
-    """Make rows of metric, cell, and mean with interval of each controller, under a header.
+    """Make a header and rows: metric, cell, and the mean with interval of each controller.
 
-    The mean excludes failed flights. The column ``failed`` contains their number.
+    The mean excludes failed flights. The column ``failed`` contains the number of failed flights.
     """
     names = _list_controllers(groups)
     header = [
@@ -44,7 +44,7 @@ def make_rows(groups: Groups, units: Mapping[str, str] = UNITS) -> List[List[Any
 
 
 def make_latex(groups: Groups) -> str:
-    """Make LaTeX tables (package booktabs) of the position errors; the best are bold."""
+    """Make LaTeX tables of the position errors (package booktabs); the best values are bold."""
     names = _list_controllers(groups)
     used = [i for i, part in enumerate(CELL) if len({group[part] for group in groups}) > 1]
     parts = []
@@ -70,7 +70,7 @@ def _list_controllers(groups: Groups) -> List[str]:
 
 
 def _list_cells(groups: Groups) -> Iterator[Tuple[Tuple[Any, ...], Dict[str, Mapping[str, Any]]]]:
-    """Yield each cell with its row of statistics by controller."""
+    """Yield each cell with its statistics by controller."""
     found: Dict[Tuple[Any, ...], Dict[str, Mapping[str, Any]]] = {}
     for group in groups:
         found.setdefault(tuple(group[name] for name in CELL), {})[group["controller"]] = group
@@ -97,7 +97,7 @@ def _format_mean(group: Any, metric: str) -> str:
 
 
 def _format_number(value: float, digits: int = 3) -> str:
-    """Write a number with powers of ten instead of an exponent."""
+    """Format a number for LaTeX, with a power of ten instead of an exponent."""
     number, _, exponent = f"{value:.{digits}g}".partition("e")
     return rf"{number} \cdot 10^{{{int(exponent)}}}" if exponent else number
 

@@ -31,13 +31,13 @@ class Plan(Cases):
     Raises
     ------
     InputError
-        If an input is invalid. Errors of user-defined controllers only fail their flights.
+        If an input is invalid. An error of a user-defined controller only fails its flights.
     """
 
     title = "Evaluation of controllers"
     """Title of the page."""
     notes: Sequence[str] = ()
-    """Remarks for the terminal and the page, a line for each."""
+    """Remarks for the terminal and the page, one line each."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class Plan(Cases):
         super().__init__(design, control, models, engines, options)
         time = options.computation_time
         self.measures_times = time == MEASURED
-        """Whether the computation times are to be measured before the flights."""
+        """Whether to measure the computation times before the flights."""
         if time is not None and not self.measures_times:
             self.set_computation_times([float(time)] * len(control.controllers))
         self.draws_spectra = options.spectra
@@ -73,17 +73,17 @@ class Plan(Cases):
 
     @property
     def omitted_margins(self) -> str:
-        """Margins that cannot be searched, with the reason, in one line; "" if all can."""
+        """Margins that are not searched and the reason, in one line; "" if all are searched."""
         labels = [self.control.controllers[i] for i in self.plugins]
         return margins.describe_omitted(self.models[0], self.lacking, labels)
 
     @property
     def plugins(self) -> Sequence[int]:
-        """Indices of the controllers that are plugins in C++."""
+        """Indices of the C++ plugin controllers."""
         return [i for i in range(len(self.control.things)) if self.control.is_plugin(i)]
 
     def set_computation_times(self, times: Sequence[float]) -> None:
-        """Delay the commands of each controller by its computation time, s; NaN: no delay."""
+        """Add computation times (s) to the delays of the controllers; NaN adds no delay."""
         known = {i: time for i, time in enumerate(times) if not math.isnan(time)}
         self.control.computation_times.update(known)
         if not self.measures_times:
@@ -105,7 +105,7 @@ class Plan(Cases):
         ]
 
     def name_case(self, case: Case) -> Dict[str, Any]:
-        """Return the names of a case, the first columns of the table."""
+        """Return the names of a case, which are the first columns of the table."""
         return {
             **self.name_sides(case),
             "scenario": self.scenarios[case.point],
@@ -117,9 +117,9 @@ class Plan(Cases):
         return self.make_plan_without_controller(self[row])
 
     def list_built_in_flights(self) -> Iterator[Tuple[Dict[str, str], FlightPlan]]:
-        """Yield names and a flight for each built-in controller on each model.
+        """Yield the names and a flight of each built-in controller on each model.
 
-        Engines with the same plugins share an entry.
+        Engines that run the plugins share an entry.
         """
         of_plugins = [name for name in self.engines if exerts_wrenches(name)]
         several = [of_plugins, *([name] for name in self.engines if name not in of_plugins)]
@@ -133,7 +133,7 @@ class Plan(Cases):
                         yield names, flight
 
     def list_events(self) -> Dict[str, Sequence[Event]]:
-        """Return the events by scenario."""
+        """Return the events of each scenario by name."""
         read = self.variation.scenarios
         found = {
             name: read[each.get("scenario")] for name, each in zip(self.scenarios, self.design)
@@ -141,7 +141,7 @@ class Plan(Cases):
         return {name: scenario.events for name, scenario in found.items() if scenario is not None}
 
     def describe(self) -> Dict[str, Any]:
-        """Return all settings except those of the controllers, as plain values."""
+        """Return all settings except the parameters of the controllers, as plain values."""
         labels = self.control.controllers
         times = {labels[i]: time for i, time in self.control.computation_times.items()}
         return {

@@ -1,18 +1,18 @@
 """Poles and linear margins of the cascaded controllers on a vehicle in hover.
 
-Around hover the axes are decoupled. The rotors follow commands as 1/(tau s + 1), tau = I_R/k_p, or
-the controller's lead time. An angle follows the command of the outer loop through a PID; its
-derivative acts on the measured rate. Without air drag,
+Around hover the axes are decoupled. The rotors follow commands as 1/(tau s + 1), where tau is
+I_R/k_p or the lead time of the controller. Each angle follows the command of the outer loop through
+a PID, with the derivative acting on the measured rate. Without air drag,
 
     phi/phi_d = (k_p s + k_i) / (s^3 (tau s + 1) + k_d s^2 + k_p s + k_i),
 
-and the angle tilts the thrust, which moves the vehicle in the loop of the position PID. In yaw, two
-torques act together: the aerodynamic torque b w^2 on the rotors, and the reaction I_R dw/dt to
-their acceleration. Chapter 2 omits the latter, which adds (1 - s/z), z = 2 b w_0 sim_slow / I_R.
-For b > 0 the zero lies in the right half-plane: the vehicle first yaws in the wrong direction.
+and the tilted thrust moves the vehicle in the loop of the position PID. In yaw, two torques act
+together: the aerodynamic torque b w^2 of the rotors, and the reaction I_R dw/dt to their
+acceleration. Chapter 2 omits the reaction, which adds the factor (1 - s/z), z = 2 b w_0 sim_slow /
+I_R. For b > 0 the zero lies in the right half-plane: the vehicle first yaws in the wrong direction.
 
-The drag of the air adds a wrench that is linear in the twist of the vehicle, about its centre of
-mass. Controllers that compensate drag subtract the same wrench, from the measured twist.
+Air drag adds a wrench about the centre of mass that is linear in the twist of the vehicle.
+Controllers with drag compensation subtract the same wrench, computed from the measured twist.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def read_gains(controller: BuiltInController) -> Dict[str, float]:
-    """Return all parameters of a controller, defaults included."""
+    """Return all parameters of a controller, including default values."""
     table = next(entry[2] for entry in _core.controllers() if entry[0] == controller.name)
     flags = {"true": 1.0, "false": 0.0}
     defaults = {
@@ -44,34 +44,34 @@ def read_gains(controller: BuiltInController) -> Dict[str, float]:
 
 
 def has_poles(controller: Any) -> bool:
-    """Whether a controller is a cascade of PIDs."""
+    """Whether a controller is a cascade of PID controllers."""
     return isinstance(controller, BuiltInController) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(
         read_gains(controller)
     )
 
 
 def compute_poles(controller: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]]:
-    """Compute poles and delay margin of each axis.
+    """Compute the poles and delay margin of each axis.
 
     Parameters
     ----------
     controller
         Controller for which `has_poles` is true.
     simulation
-        Vehicle and engine; its state changes.
+        Vehicle and engine. The function changes the state.
 
     Returns
     -------
     list of dict
-        Row per axis: ``axis``, ``poles`` (complex, 1/s), ``zero`` (1/s, infinite without one),
-        ``stable``, and ``because``, the cause of instability. ``delay_margin`` (s) is the linear
-        delay margin at the input of the motors beyond the controller's own delay and half its
-        period; NaN if unstable.
+        Row per axis: ``axis``, ``poles`` (complex, 1/s), ``zero`` (1/s, infinite without a zero),
+        ``stable``, and ``because``, the cause of instability. ``delay_margin`` (s) is the delay at
+        the motor input, beyond the controller's own delay and half its period, that the linear loop
+        tolerates. It is NaN for an unstable loop.
 
     Raises
     ------
     InputError
-        If chapter 2 cannot describe the vehicle.
+        If the equations of chapter 2 do not cover the vehicle.
     """
     from ...thesis.chapter2 import Vehicle  # scipy is slow to import
 
@@ -94,9 +94,9 @@ def compute_poles(controller: BuiltInController, simulation: Simulation) -> List
 
 
 def find_yaw_zero(simulation: Simulation) -> float:
-    """Return the zero of the yaw dynamics in hover, 1/s; infinite without one.
+    """Return the zero of the yaw dynamics in hover, 1/s; infinite without a zero.
 
-    The simulation describes vehicle and engine. Vehicles that chapter 2 cannot describe have none.
+    The simulation defines vehicle and engine. Vehicles that chapter 2 does not cover have no zero.
     """
     from ...thesis.chapter2 import Vehicle  # scipy is slow to import
 
@@ -108,7 +108,7 @@ def find_yaw_zero(simulation: Simulation) -> float:
 
 
 def describe_yaw_zero(zero: float) -> str:
-    """Describe a zero in the right half-plane, and its effect on gains; "" for any other."""
+    """Describe a zero in the right half-plane and its effect on gains; "" for any other zero."""
     if not 0 < zero < math.inf:
         return ""
     return (
@@ -159,6 +159,6 @@ def _make_row(axis: str, loop: Loop, zero: float, cause: str, delay: float) -> D
 
 
 def format_poles(row: Dict[str, Any], count: int = 3) -> str:
-    """Format the rightmost poles, one of each conjugate pair."""
+    """Format the rightmost poles; each conjugate pair appears once."""
     shown = [pole for pole in row["poles"] if pole.imag >= 0][:count]
     return ", ".join(f"{p.real:.3g}" + (f" +- {p.imag:.3g}i" if p.imag else "") for p in shown)

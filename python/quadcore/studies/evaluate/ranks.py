@@ -1,8 +1,9 @@
-"""Ranks of controllers over all cells of a study: Friedman's test, post-hoc test, effect sizes.
+"""Ranks of controllers over all cells of a study: Friedman's test, post-hoc test, effect size.
 
-A cell is a combination of reference, engine, model and scenario. Friedman's test answers whether
-the controllers differ over the cells, and Nemenyi's test which of them (Demsar, Journal of Machine
-Learning Research 7, 2006). Both rank the mean error of each cell, so the cells count equally.
+A cell is a combination of reference, engine, model and scenario. Friedman's test shows whether the
+controllers differ over the cells, and Nemenyi's test shows which ones differ (Demsar, Journal of
+Machine Learning Research 7, 2006). Both tests rank the mean error of each cell, so all cells have
+equal weight.
 """
 
 from __future__ import annotations
@@ -18,22 +19,22 @@ from .best_controllers import CELL, RANKED
 
 
 class Ranks(NamedTuple):
-    """Ranks of controllers; a failed flight is the last rank of its cell.
+    """Ranks of controllers. Controllers with a failed flight rank last in that cell.
 
     Attributes
     ----------
     controllers : list of str
-        Controllers in the order of their mean ranks.
+        Controllers in the order of their mean rank.
     mean_ranks : list of float
-        Mean rank of each; 1 is best.
+        Mean rank of each controller, where 1 is best.
     cells : int
-        Number of cells with all controllers.
+        Number of cells in which all controllers have flights.
     p_value : float
         p-value of Friedman's test; NaN for fewer than three controllers or two cells.
     agreement : float
-        Kendall's W, the effect size: 0 for random ranks, 1 for equal ranks in all cells.
+        Kendall's W, the effect size: 0 for random ranks, 1 for identical ranks in all cells.
     post_hoc : dict
-        p-value of Nemenyi's test by pair of controllers; empty without `p_value`.
+        p-value of Nemenyi's test for each pair of controllers; empty without `p_value`.
     """
 
     controllers: List[str]
@@ -88,7 +89,7 @@ def _test_friedman(ranks: np.ndarray) -> Tuple[float, float]:
     ties = sum(int((each**3 - each).sum()) for each in repeats)
     spread = 12 * float(((ranks.sum(axis=0) - cells * (count + 1) / 2) ** 2).sum())
     whole = cells * (cells * (count**3 - count) - ties)
-    if whole == 0:  # every cell is one tie
+    if whole == 0:  # all ranks of every cell are tied
         return 1.0, 0.0
     agreement = spread / whole
     return float(chdtrc(count - 1, cells * (count - 1) * agreement)), agreement
@@ -129,7 +130,7 @@ def _exceed_range(width: float, count: int) -> float:
 
 
 def describe_ranks(ranks: Ranks, confidence: float) -> List[str]:
-    """Describe ranks in a few lines; none for one controller or one cell."""
+    """Describe ranks in a few lines; empty for one controller or fewer than two cells."""
     if len(ranks.controllers) < 2 or ranks.cells < 2:
         return []
     order = ", ".join(f"{n} {r:.3g}" for n, r in zip(ranks.controllers, ranks.mean_ranks))

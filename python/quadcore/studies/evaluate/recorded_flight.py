@@ -26,31 +26,31 @@ from ..tracking_errors import sample_flat_states
 from ..tracking_metrics import RotorData
 
 FIND = "find"
-"""Alignment that is searched."""
+"""Alignment that requests a search."""
 
 Alignment = Union[float, str]
 """Time in the log at which the reference begins, s, or `FIND`."""
 
-_EVEN = 0.01  # of the row spacing; larger deviations make it uneven
-_GAP = 10  # row spacings; a longer time without rows gives a warning
-_OVERLAP = 0.5  # of the log; an alignment covers at least this part
-_SHIFTS = 2000  # at most, in the coarse search of an alignment
+_EVEN = 0.01  # relative to the row spacing; rows with larger deviations are uneven
+_GAP = 10  # in row spacings; a longer gap gives a warning
+_OVERLAP = 0.5  # minimum share of the log after the start of the reference
+_SHIFTS = 2000  # maximum number of shifts on each side in the coarse search
 
 
 class RecordedFlight(NamedTuple):
     """A recorded flight along a reference."""
 
     label: str
-    """Name in tables, such as that of the controller."""
+    """Label in tables, such as the name of the controller."""
     file: str
     begin: float
     """Time in the log at which the reference begins, s."""
     is_found: bool
-    """Whether `begin` was searched."""
+    """Whether a search found `begin`."""
     spacing: float
     """Time between rows, s."""
     was_even: bool
-    """Whether the rows of the file are evenly spaced; otherwise they were interpolated."""
+    """Whether the rows of the file are evenly spaced. Otherwise they are interpolated."""
     log: Log
     """Evenly spaced log in the time of the reference, with topics ``reference`` and ``error``."""
 
@@ -64,7 +64,7 @@ class RecordedFlight(NamedTuple):
     def make_record(
         self, plan: FlightPlan, simulation: Simulation, needs_flat_states: bool
     ) -> FlightRecord:
-        """Make the record of the flight; plan and simulation describe vehicle and world."""
+        """Make the record of the flight; `plan` and `simulation` define vehicle and world."""
         log, flat_states = _add_rotors(self.file, self.log, simulation.rotors), None
         if needs_flat_states:
             flat_states = sample_flat_states(simulation, plan, log.time)
@@ -88,7 +88,7 @@ class RecordedFlight(NamedTuple):
         )
 
     def measure(self, plan: FlightPlan, simulation: Simulation, criteria: Criteria) -> Outcome:
-        """Compute the metrics; plan and simulation describe vehicle and world."""
+        """Compute the metrics; `plan` and `simulation` define vehicle and world."""
         record = self.make_record(plan, simulation, criteria.needs_flat_states)
         outcome = measure_record(record, criteria, keep=True)
         if outcome.flew and not self.log.rotor_velocity.shape[1]:
@@ -97,7 +97,7 @@ class RecordedFlight(NamedTuple):
 
 
 def read_recorded_flight(label: str, given: Union[str, Path, Log], mapping: Any) -> Tuple[str, Log]:
-    """Return the name of the file and its log; raises `InputError` if it cannot be read."""
+    """Return the name and the log of a file; raise `InputError` if it cannot be read."""
     if isinstance(given, Log):
         return given.title or label, given
     return printable_name(given), Log.of_file(given, mapping)
@@ -116,20 +116,20 @@ def align_flight(
     Parameters
     ----------
     label, file
-        Names, for tables and messages.
+        Names for tables and messages.
     log
-        Log, perhaps with uneven rows.
+        Log, possibly with unevenly spaced rows.
     reference
-        Function of the time, which begins at 0.
+        Function of the time t (s), which starts at t = 0.
     alignment
         Time in the log at which the reference begins, s, or `FIND`.
     duration
-        Time after which rows are left out, s. Default: the whole log.
+        Time after the start of the reference at which the log is cut, s. Default: the whole log.
 
     Raises
     ------
     InputError
-        If fewer than two rows are left.
+        If fewer than two rows remain.
     """
     table, spacing, was_even = _make_even(file, log)
     is_found = alignment == FIND
@@ -156,7 +156,7 @@ def align_flight(
 
 
 def _make_even(file: str, log: Log) -> Tuple[np.ndarray, float, bool]:
-    """Return rows with even spacing, the spacing, and whether those of the log are even."""
+    """Return evenly spaced rows, their spacing (s), and whether the rows of the log were even."""
     if len(log) < 2:
         raise InputError(f"{file}: the log has {len(log)} rows. Record at least two.")
     steps = np.diff(log.time)
@@ -177,7 +177,7 @@ def _make_even(file: str, log: Log) -> Tuple[np.ndarray, float, bool]:
 
 
 def _find_begin(table: np.ndarray, spacing: float, reference: Any) -> float:
-    """Find the time in a log at which the reference begins: the minimum RMS error, s."""
+    """Find the time in a log (s) at which the reference begins, by the minimum RMS error."""
     from scipy.optimize import minimize_scalar  # slow to import
 
     time, position = table[:, 0], table[:, 1:4]
@@ -194,7 +194,7 @@ def _find_begin(table: np.ndarray, spacing: float, reference: Any) -> float:
     step = max(spacing, 2 * reach / _SHIFTS)
     shifts = time[0] + step * np.arange(-int(reach / step), int(reach / step) + 1)
     errors = [compute_error(shift) for shift in shifts]
-    # Of equally good ones, such as periods of a circle, the one nearest to the start of the log.
+    # Of equally good times, such as periods of a circle, take the nearest to the start of the log.
     good = np.flatnonzero(np.array(errors) <= 1.01 * min(errors) + 1e-12)
     best = shifts[good[np.abs(shifts[good] - time[0]).argmin()]]
     found = minimize_scalar(compute_error, bounds=(best - step, best + step), method="bounded")
@@ -202,7 +202,7 @@ def _find_begin(table: np.ndarray, spacing: float, reference: Any) -> float:
 
 
 def _add_rotors(file: str, log: Log, rotors: Sequence[Rotor]) -> Log:
-    """Return the log with columns for the rotors, zero if the file has none."""
+    """Return the log with rotor columns; they are zero if the file contains none."""
     count = log.rotor_velocity.shape[1]
     if count == len(rotors):
         return log

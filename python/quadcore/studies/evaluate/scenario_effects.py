@@ -20,9 +20,9 @@ def compute_scenario_effects(groups: Sequence[Mapping[str, Any]]) -> List[Dict[s
     Returns
     -------
     list of dict
-        Row per combination and scenario: names, mean ``rms_position`` (m), its increase over the
-        first scenario, ``loss`` (m), and its ratio to the first scenario, ``factor``; infinite
-        after a failure. Empty for a single scenario.
+        Row per combination and scenario: names, mean ``rms_position`` (m), ``loss``, the increase
+        over the first scenario (m), and ``factor``, the ratio to the first scenario. Errors are
+        infinite after a failure. Empty for a single scenario.
     """
     first: Dict[Any, float] = {}
     rows = []

@@ -24,14 +24,14 @@ def summarise_seeds(
     Parameters
     ----------
     groups
-        Combination of each flight; the index of the controller is first. Others are compared with
-        the first controller of the same combination.
+        Combination of each flight as indices, of which the first is that of the controller. Each
+        controller is compared with the first one of the same combination.
     names
         Names of each flight.
     outcomes
         Outcome of each flight.
     units
-        Metrics with their units.
+        Unit of each metric.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def summarise_seeds(
 def _summarise(
     flights: Sequence[Outcome], first: Sequence[Outcome], units: Mapping[str, str]
 ) -> Dict[str, Any]:
-    """Summarise the flights of a combination, and compare them with the first controller."""
+    """Summarise the flights of a combination, and compare them with the first controller's."""
     took_place = [flight for flight in flights if flight.was_flown]
     flew = [flight for flight in took_place if flight.flew]
     pairs = [(f, other) for f, other in zip(flights, first) if f.flew and other.flew]
@@ -94,7 +94,7 @@ def _summarise(
 
 
 def _is_random(flights: Sequence[Outcome]) -> Optional[bool]:
-    """Whether position errors differ among seeds; None for fewer than two flights."""
+    """Whether position errors differ between seeds; None for fewer than two flights."""
     if len(flights) < 2:
         return None
     return any(
@@ -105,6 +105,6 @@ def _is_random(flights: Sequence[Outcome]) -> Optional[bool]:
 
 
 def _pick_finite(values: Sequence[float]) -> np.ndarray:
-    """Leave out missing values, such as the overshoot without a step."""
+    """Remove missing values, such as the overshoot without a step."""
     array: np.ndarray = np.array([value for value in values if math.isfinite(value)], dtype=float)
     return array

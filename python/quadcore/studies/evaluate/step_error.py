@@ -10,7 +10,7 @@ from .plan import Plan
 
 
 def measure_step_error(plan: Plan) -> Optional[StepError]:
-    """Repeat the start of a flight at half the step, if possible one of a built-in controller.
+    """Repeat the start of a flight with half the step, preferably with a built-in controller.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ def measure_step_error(plan: Plan) -> Optional[StepError]:
     Returns
     -------
     StepError or None
-        Error; None without simulated flights in an engine with plugins.
+        Numerical error; None if no flight uses an engine with plugins.
     """
     for name, flight in _list_flights(plan):
         found = compute_step_error(name, flight, plan.options.time_limit)

@@ -38,7 +38,7 @@ def format_rows(evaluation: Evaluation) -> List[Dict[str, str]]:
 def choose_columns(
     lines: Sequence[Mapping[str, str]], units: Mapping[str, str] = UNITS
 ) -> Dict[str, str]:
-    """Return the headings of the columns to show; names that all rows share are left out."""
+    """Return the headings of the columns to show; names that all rows share are omitted."""
     names = (name for name in NAMES if len({line[name] for line in lines}) > 1)
     shown = {"controller": "controller", **{name: name for name in names}, "flown": "flown"}
     shown.update(rms_position="RMS (m)", max_position="max (m)")
@@ -52,7 +52,7 @@ def choose_columns(
 
 
 def _format_difference(group: Mapping[str, Any]) -> str:
-    """Format the difference from the first controller, as "equal" below `EQUAL`."""
+    """Format the difference from the first controller; "equal" if it is below `EQUAL`."""
     value = group["difference_final_position"]
     if abs(value) < EQUAL:
         return "equal"
@@ -61,11 +61,11 @@ def _format_difference(group: Mapping[str, Any]) -> str:
 
 
 def _format_interval(group: Mapping[str, Any], name: str, seeds: int, of: str = "") -> str:
-    """Format an interval with its number of seeds; "" without one."""
+    """Format an interval with its number of seeds; "" without an interval."""
     low, high = group[f"{of}low_{name}"], group[f"{of}high_{name}"]
     return "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}] n={seeds}"
 
 
 def format_error(value: float) -> str:
-    """Format an error; infinity stands for a failed flight."""
+    """Format an error; infinity marks a failed flight."""
     return "failed" if math.isinf(value) else format_number(value)

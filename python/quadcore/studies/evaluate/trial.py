@@ -19,32 +19,32 @@ from ...simulation.state import State
 from ..cases import Case, Cases
 
 EFFECTS = ("thrust", "drag", "lag")
-"""Effects that tags scale, as named in the tables of tags."""
+"""Effects that tags can scale, as in the tables of tags."""
 
 
 KICK = 0.1
-"""Initial disturbance: change of each component of the velocity (m/s) and of the rates (rad/s)."""
+"""Initial disturbance: change of each component of velocity (m/s) and rates (rad/s)."""
 
 
 class Trial(NamedTuple):
-    """A controller with changes of timing and vehicle."""
+    """A controller with modified timing and vehicle."""
 
     controller: int
-    """Index in the plan."""
+    """Index of the controller in the plan."""
     delay: float = 0.0
     """Additional delay, s."""
     rate: Optional[float] = None
-    """Update rate, 1/s; None: the controller's."""
+    """Update rate, 1/s. None: that of the controller."""
     thrust: float = 1.0
-    """Factor of thrust and torque of the rotors."""
+    """Factor on thrust and torque of the rotors."""
     drag: float = 1.0
     lag: float = 1.0
-    """Factor of the time constant of the motors."""
+    """Factor on the time constant of the motors."""
     kicked: bool = False
     """Whether the flight starts with the disturbance `KICK`."""
 
     def make_plan(self, plan: Cases) -> FlightPlan:
-        """Make the plan of the flight; errors of the controller pass through."""
+        """Make the plan of the flight; errors of the controller propagate."""
         flight = plan.make_plan(Case(self.controller))
         if self.kicked:
             flight = _KickedPlan(
@@ -71,7 +71,7 @@ class Trial(NamedTuple):
         return replace(flight, controller=controller, parameters=changed)
 
     def _delay_odometry(self, flight: FlightPlan) -> FlightPlan:
-        """Delay the odometry of a plugin instead of its commands: the loop has the same delay."""
+        """Delay the odometry of a plugin, not its commands; the delay of the loop is the same."""
         simulation = replace(flight, on_reference=False).simulation()
         sensor = simulation.topics[SENSED].writer
         for plugin in simulation.plugins:
@@ -85,7 +85,7 @@ class Trial(NamedTuple):
         )
 
     def _scale_tags(self, simulation: Simulation) -> Dict[str, str]:
-        """Return the tags of the scaled vehicle."""
+        """Return the tag values of the scaled vehicle."""
         return {
             key: repr(number * getattr(self, tag.effect) ** tag.power)
             for key, tag, number in _scaling_tags(simulation)
@@ -105,13 +105,13 @@ class _KickedPlan(FlightPlan):
 
 
 def list_missing_effects(simulation: Simulation) -> List[str]:
-    """List the effects that no tag of a vehicle scales."""
+    """List the effects that no tag of a vehicle can scale."""
     found = {tag.effect for _, tag, _ in _scaling_tags(simulation)}
     return [name for name in EFFECTS if name not in found]
 
 
 def _scaling_tags(simulation: Simulation) -> Iterator[Tuple[str, ParameterInfo, float]]:
-    """Yield the tags that scale an effect: PLUGIN.TAG, tag, number."""
+    """Yield ``PLUGIN.TAG``, the tag and its number, for each tag that scales an effect."""
     for plugin in simulation.plugins:
         for tag in plugin.parameters:
             number = parse_number(tag.value)
@@ -120,7 +120,7 @@ def _scaling_tags(simulation: Simulation) -> Iterator[Tuple[str, ParameterInfo, 
 
 
 class _NominalModelController(WrappedController):
-    """Wrap a user-defined controller, which receives the nominal vehicle in `reset`."""
+    """Wrap a user-defined controller, so that `reset` receives the nominal vehicle."""
 
     def __init__(self, controller: Any, vehicle: Simulation) -> None:
         super().__init__(controller)
@@ -133,7 +133,7 @@ class _NominalModelController(WrappedController):
             self.inner_loop = InnerLoop(own.spins, vehicle, **parameters)
 
     def reset(self, flown: Simulation) -> None:
-        """Reset the controller with the nominal vehicle, and the sensors of the simulated one."""
+        """Reset the controller with the nominal vehicle, but the sensors of the simulated one."""
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             is_fair = isinstance(self._controller, FairController)

@@ -1,4 +1,4 @@
-"""Lags of the topics of a recording behind its pose."""
+"""Lags of the topics of a recording relative to its pose."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from ...formats.recordings.recording import interpolate_orientation
 from ...formats.recordings.series import Series
 from .smoothing import fit_locally
 
-_STEP = 2e-3  # s
+_STEP = 2e-3  # s; resolution of the search
 _MOST = 0.15  # s; larger lags are not searched
-_REACH = 0.04  # s, of the polynomials that differentiate
+_REACH = 0.04  # s; half-width of the polynomials for differentiation
 _BLOCK = 0.5
-"""Duration of a block of samples with errors that depend on each other, s."""
+"""Duration of a block of samples with correlated errors, s."""
 _CERTAIN = 0.999
-"""Confidence from which the axes of a pose and an IMU differ."""
+"""Confidence level at which the axes of pose and IMU count as different."""
 _SMALLEST = np.radians(0.3)
-"""Rotation below which the errors of lags and smoothing count, rad."""
+"""Minimum rotation that is corrected, rad; smaller ones may be errors of lags and smoothing."""
 _GRAVITY = np.array([0, 0, 9.81])
 
 
 def find_lags(recording: Recording) -> Dict[str, float]:
-    """Find the lag of velocity, rates and acceleration behind the pose, s.
+    """Find the lags of velocity, rates and acceleration relative to the pose, s.
 
-    The derivative of the pose is the reference. The lag is the maximum of the correlation, found
-    between samples by a parabola.
+    The derivative of the pose is the reference. The lag maximises the correlation; a parabola
+    interpolates between samples.
 
     Returns
     -------
     dict of str to float
-        Lag of each topic with a reference; positive if the topic shows the motion later.
+        Lag of each topic that has a reference; positive if the topic is late.
     """
     given = recording.quantities
     references: Dict[str, Series] = {}
@@ -52,18 +52,19 @@ def find_lags(recording: Recording) -> Dict[str, float]:
 
 
 def find_mount(recording: Recording) -> Optional[np.ndarray]:
-    """Find the rotation of the pose's body axes against those of the IMU.
+    """Find the rotation between the body axes of the pose and those of the IMU.
 
-    Specific force and rates, as the IMU measures them and as they follow from the pose, are
-    directions in both axes. The rotation between them solves Wahba's problem (W. Kabsch, Acta
-    Crystallographica A32, 1976), with the force in units of gravity and the rates in their RMS.
-    Hotelling's test decides whether it differs from zero. Its covariance comes from a sandwich
-    estimator with blocks of 0.5 s as clusters, because the errors of samples depend on each other.
+    The specific force and the rates are measured by the IMU and also derived from the pose, so they
+    are known in both axes. The rotation between the axes solves Wahba's problem (W. Kabsch, Acta
+    Crystallographica A32, 1976), with the force scaled by gravity and the rates by their RMS.
+    Hotelling's test decides whether the rotation differs from zero. Its covariance comes from a
+    sandwich estimator with blocks of 0.5 s as clusters, because the errors of neighbouring samples
+    are correlated.
 
     Returns
     -------
     ndarray (4,) or None
-        Quaternion x, y, z, w, or None without IMU or pose, or if the rotation is not significant.
+        Quaternion x, y, z, w. None without an IMU or a pose, or if the rotation is not significant.
     """
     from scipy.spatial.transform import Rotation
 
@@ -95,16 +96,16 @@ def find_mount(recording: Recording) -> Optional[np.ndarray]:
 def _is_significant(
     turn: np.ndarray, ours: np.ndarray, turned: np.ndarray, block: np.ndarray
 ) -> bool:
-    """Test whether the rotation vector between two sets of directions differs from zero.
+    """Test whether the rotation between two sets of directions differs from zero.
 
     Parameters
     ----------
     turn : ndarray (3,)
-        Rotation vector that aligns the sets best.
+        Rotation vector that best aligns the sets, rad.
     ours, turned : ndarray (n, 3)
-        Vectors of the first set, and of the second after the rotation.
+        Vectors of the first set, and rotated vectors of the second set.
     block : ndarray (n,)
-        Number of the block of each vector.
+        Block index of each vector.
     """
     from scipy.special import fdtri  # scipy.stats is slow to import
 
@@ -114,7 +115,7 @@ def _is_significant(
     count = len(numbers)
     if count <= 3:
         return False
-    # A small further rotation p moves `turned` by p x turned; its gradient is turned x error.
+    # A small additional rotation p moves `turned` by p x turned; its gradient is turned x error.
     normal = np.sum(turned**2) * np.eye(3) - turned.T @ turned
     scores = np.zeros((count, 3))
     np.add.at(scores, place, np.cross(turned, ours - turned))
@@ -125,7 +126,7 @@ def _is_significant(
 
 
 def turn_pose(recording: Recording, mount: np.ndarray) -> Recording:
-    """Turn the pose's body axes to those of the IMU."""
+    """Rotate the body axes of the pose to those of the IMU."""
     from scipy.spatial.transform import Rotation
 
     series = recording.quantities["orientation"]
@@ -135,7 +136,7 @@ def turn_pose(recording: Recording, mount: np.ndarray) -> Recording:
 
 
 def shift_topics(recording: Recording, lags: Dict[str, float]) -> Recording:
-    """Move topics to the time base of the pose."""
+    """Shift topics to the time base of the pose."""
     quantities = {
         name: Series(series.time - lags.get(name, 0.0), series.values)
         for name, series in recording.quantities.items()
@@ -144,7 +145,7 @@ def shift_topics(recording: Recording, lags: Dict[str, float]) -> Recording:
 
 
 def compute_rates(orientation: Series) -> Series:
-    """Return angular velocities in body axes by local polynomials through the orientation.
+    """Return the angular velocity in body axes from local polynomials through the orientation.
 
     The rates are the vector part of 2 q* dq/dt.
     """
@@ -190,7 +191,7 @@ def _find_lag(reference: Series, topic: Series) -> Optional[float]:
     other = _interpolate(topic, wide)
     centre = np.median(one, axis=0)
     limit = 6 * np.median(np.abs(one - centre), axis=0) + 1e-9
-    # Glitches would decide. Both are clipped, because clipping moves the maximum.
+    # Glitches would dominate. Both signals are clipped, because clipping one shifts the maximum.
     one, other = (np.clip(each - centre, -limit, limit) for each in (one, other))
     one = one - one.mean(axis=0)
     scores = np.array([_correlate(one, other[k : k + len(one)]) for k in range(2 * most + 1)])

@@ -1,4 +1,4 @@
-"""Samples of a recording that are left out, and why."""
+"""Samples of a recording that are removed, and the reasons."""
 
 from __future__ import annotations
 
@@ -12,36 +12,36 @@ from .smoothing import estimate_noise, fit_locally
 
 _MEASURED = ("position", "orientation", "velocity", "rates", "acceleration")
 _FAR = 8.0
-"""Deviation from the neighbours at which a pose is a glitch, in standard deviations."""
+"""Deviation from its neighbours that makes a pose a glitch, in standard deviations."""
 _LEAST = {"position": 0.01, "orientation": 0.03}
-"""The minimum of this deviation: m, and twice the sine of half an angle."""
-_REACH = 0.05  # s, of the polynomials that predict a pose
+"""Minimum of this deviation: m, and twice the sine of half an angle."""
+_REACH = 0.05  # s; half-width of the polynomials that predict a pose
 _NEIGHBOURS = 11
-"""Samples among which one is removed at a time, for a glitch spoils the polynomials around it."""
+"""Removals per round: one in this many samples, because a glitch distorts its surroundings."""
 _ROUNDS = 20
 _FASTEST = 5.0
-"""Maximum rotor speed relative to a high quantile: thrust of at least 25 times the weight."""
-_HIGH = 90  # percent; less than the rest of the samples may be impossible
+"""Maximum rotor speed relative to a high quantile, which allows 25 times the thrust."""
+_HIGH = 90  # percentile; fewer than the remaining samples may be invalid
 _FULL_SCALES = {
     "rates": np.radians([250, 500, 1000, 2000, 4000]),
     "acceleration": 9.80665 * np.array([2, 3, 4, 6, 8, 12, 16, 24, 32]),
 }
-"""Full scales of common IMUs, rad/s and m/s^2."""
+"""Full-scale ranges of common IMUs, rad/s and m/s^2."""
 _OFFSET = 0.03
-"""Distance of a saturated sample from the full scale, relative to it: offset and gain."""
+"""Relative distance from full scale at which a sample counts as saturated (offset and gain)."""
 _GAP = 3.0
-"""Multiple of the usual distance of samples from which a gap counts."""
+"""Length of a gap, relative to the usual time between samples."""
 
 
 class Removal(NamedTuple):
-    """Samples that were left out.
+    """Samples that were removed.
 
     Attributes
     ----------
     topic, reason : str
-        Quantity and reason.
+        Quantity, and reason for the removal.
     samples : int
-        Number of samples.
+        Number of removed samples.
     """
 
     topic: str
@@ -50,12 +50,11 @@ class Removal(NamedTuple):
 
 
 def clean_recording(recording: Recording) -> Tuple[Recording, List[Removal]]:
-    """Leave out repeated samples, impossible and saturated values, and glitches, in this order.
+    """Remove repeated samples, invalid and saturated values, and glitches, in this order.
 
-    Rows in which only some columns are numbers are already left out, and only counted.
+    Rows with missing values are already removed; this function only reports their number.
 
-    The order matters: a repeated sample looks like a standstill, and the difference of two glitches
-    like a motion.
+    The order matters: a repeated sample looks like a standstill, and two glitches look like motion.
     """
     removals = [
         Removal(name, "incomplete", count) for name, count in recording.incomplete.items() if count
@@ -72,7 +71,7 @@ def clean_recording(recording: Recording) -> Tuple[Recording, List[Removal]]:
 
 
 def list_gaps(series: Series) -> np.ndarray:
-    """List begin and end of each gap between samples, s; shape (gaps, 2)."""
+    """List the start and end of each gap between samples, s; shape (gaps, 2)."""
     apart = np.diff(series.time)
     if len(apart) == 0:
         return np.empty((0, 2))
@@ -89,7 +88,7 @@ def _find_repeated(name: str, series: Series) -> np.ndarray:
 
 
 def _find_impossible(name: str, series: Series) -> np.ndarray:
-    """Find commands out of their range, and speeds and voltages that do not exist."""
+    """Find commands outside their range, and impossible speeds and voltages."""
     wrong = np.zeros(len(series.time), bool)
     if name == "commands":
         wrong[:] = ((series.values < -1e-6) | (series.values > 1 + 1e-6)).any(axis=1)
@@ -102,7 +101,7 @@ def _find_impossible(name: str, series: Series) -> np.ndarray:
 
 
 def _find_saturated(name: str, series: Series) -> np.ndarray:
-    """Find samples of an IMU that stay at the maximum of an axis, near a full scale."""
+    """Find samples of an IMU that stay at the maximum of an axis close to full scale."""
     saturated = np.zeros(len(series.time), bool)
     if name not in _FULL_SCALES or len(saturated) < 2:
         return saturated
@@ -116,7 +115,7 @@ def _find_saturated(name: str, series: Series) -> np.ndarray:
 
 
 def _find_glitches(name: str, series: Series) -> np.ndarray:
-    """Find poses that their neighbours contradict, the farthest first."""
+    """Find poses that deviate from their neighbours, starting with the maximum deviation."""
     from scipy.ndimage import maximum_filter1d
 
     glitch = np.zeros(len(series.time), bool)

@@ -1,4 +1,4 @@
-"""Coordinates of a search, in which every point is a possible vehicle."""
+"""Coordinates of a search in which every point is a physically possible vehicle."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _MOMENTS = ("ixx", "iyy", "izz")
 _PRODUCTS = ("ixy", "ixz", "iyz")
 _PAIRS = ((0, 1), (0, 2), (1, 2))
 _THINNEST, _LARGEST = 1e-3, 1e2
-"""Bounds of the second moment of a body along an axis, relative to the mean of the start."""
-_STEP = 1e-5  # of a coordinate, for derivatives
+"""Bounds of the second moments of a body, relative to their mean at the start."""
+_STEP = 1e-5  # step of a coordinate for derivatives
 _SPREAD = 1.5
-"""Standard deviation of the prior of the logarithms: a factor of 4.5, against runaway search."""
+"""Standard deviation of the prior of the logarithms (a factor of 4.5), against divergence."""
 
 
 class _Body(NamedTuple):
@@ -25,13 +25,13 @@ class _Body(NamedTuple):
     Attributes
     ----------
     link : str
-        Name.
+        Name of the link.
     places : list of int
-        Places of ixx, iyy and izz among the parameters.
+        Indices of ixx, iyy and izz among the parameters.
     products : list of int or None
-        Places of ixy, ixz and iyz among the parameters; None if one is not free.
+        Indices of ixy, ixz and iyz among the parameters; None for a fixed product.
     fixed : ndarray (3,)
-        Values of ixy, ixz and iyz that are not free.
+        Values of ixy, ixz and iyz, used if they are fixed.
     """
 
     link: str
@@ -40,19 +40,19 @@ class _Body(NamedTuple):
     fixed: np.ndarray
 
     def find_products(self, values: np.ndarray) -> np.ndarray:
-        """Return ixy, ixz and iyz."""
+        """Return ixy, ixz and iyz, kg m^2."""
         pairs = zip(self.products, self.fixed)
         return np.array([fixed if k is None else values[k] for k, fixed in pairs])
 
 
 class Coordinates:
-    """Free parameters as numbers near 1, and logarithms for moments of inertia.
+    """Coordinates of the free parameters: scaled values, and logarithms for moments of inertia.
 
-    If ixx, iyy and izz of a link are free, their coordinates are logarithms of the squared diagonal
-    of L. Here S = L L^T = tr(I)/2 - I are the second moments of its mass. The products of
-    inertia give the rest of L. So S is positive definite, and each point is a body that can exist
-    (log-Cholesky; C. Rucker and P. M. Wensing, "Smooth parameterization of rigid-body inertia",
-    IEEE RA-L 7, 2022).
+    If ixx, iyy and izz of a link are free, their coordinates are the logarithms of the squared
+    diagonal of L. Here S = L L^T = tr(I)/2 - I is the matrix of the second moments of the mass. The
+    products of inertia give the rest of L. Therefore S is positive definite, and each point is a
+    possible body (log-Cholesky; C. Rucker and P. M. Wensing, "Smooth parameterization of rigid-body
+    inertia", IEEE RA-L 7, 2022).
 
     Parameters
     ----------
@@ -61,16 +61,16 @@ class Coordinates:
     start
         Start values.
     sizes
-        Typical sizes, to scale the numbers.
+        Typical magnitudes, which scale the values.
     limits
-        Minimum and maximum of each, shape (names, 2).
+        Minimum and maximum of each parameter, shape (names, 2).
     products
-        Values of ``LINK.ixy`` and so on by name.
+        Products of inertia (``LINK.ixy`` and so on) by name.
 
     Raises
     ------
     InputError
-        If no body has the start values of a link.
+        If the start values of a link are not physically possible.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class Coordinates:
                 )
         self.low, self.high = (limits / self.sizes[:, None]).T
         self.prior = np.zeros(len(names))
-        """Inverse standard deviation of the prior of each coordinate around its start."""
+        """Inverse standard deviation of the prior of each coordinate around its start value."""
         for body in self._bodies:
             mean = start[body.places].sum() / 6
             self.low[body.places] = np.log(_THINNEST * mean)
@@ -102,7 +102,7 @@ class Coordinates:
             self.prior[body.places] = 1 / _SPREAD
 
     def encode(self, values: np.ndarray) -> np.ndarray:
-        """Return the coordinates of values."""
+        """Return the coordinates of parameter values."""
         x = np.asarray(values / self.sizes, float)
         for body in self._bodies:
             second = _to_second_moments(values[body.places], body.find_products(values))
@@ -110,7 +110,7 @@ class Coordinates:
         return x
 
     def decode(self, x: np.ndarray) -> np.ndarray:
-        """Return the values at coordinates."""
+        """Return the parameter values at a point."""
         values = np.asarray(x * self.sizes, float)
         for body in self._bodies:
             second = _compose(x[body.places], body.find_products(values))
@@ -118,23 +118,23 @@ class Coordinates:
         return values
 
     def decode_derivative(self, x: np.ndarray) -> np.ndarray:
-        """Return the derivative of the values by the coordinates, shape (names, names)."""
+        """Return the derivative of the values with respect to the coordinates, (names, names)."""
         steps = _STEP * np.eye(len(x))
         changes = [self.decode(x + step) - self.decode(x - step) for step in steps]
         return np.stack(changes, axis=1) / (2 * _STEP)
 
     def name(self, x: np.ndarray) -> Dict[str, float]:
-        """Return the values by name."""
+        """Return the parameter values by name."""
         return dict(zip(self.names, self.decode(x).tolist()))
 
 
 def check_bodies(model: Model, free: Iterable[str]) -> None:
-    """Check that links with free moments of inertia are bodies that can exist.
+    """Check that links with free moments of inertia are physically possible.
 
     Raises
     ------
     FlightError
-        If no body has the moments of such a link.
+        If the inertia of such a link is not physically possible.
     """
     written = list_link_values(model.document)
     parts = [name.rpartition(".") for name in free if name in written]
@@ -160,7 +160,7 @@ def _make_body(
 
 
 def _to_second_moments(moments: np.ndarray, products: np.ndarray) -> np.ndarray:
-    """Return S = tr(I)/2 - I, shape (3, 3)."""
+    """Return the second moments S = tr(I)/2 - I, shape (3, 3)."""
     second = np.diag(moments.sum() / 2 - moments)
     for product, (i, j) in zip(products, _PAIRS):
         second[i, j] = second[j, i] = -product
@@ -168,16 +168,16 @@ def _to_second_moments(moments: np.ndarray, products: np.ndarray) -> np.ndarray:
 
 
 def _compose(logarithms: np.ndarray, products: np.ndarray) -> np.ndarray:
-    """Return the diagonal of S from that of L and the products of inertia."""
-    one, two, three = np.exp(logarithms)  # squares of the diagonal of L
+    """Return the diagonal of S from the logarithms and the products of inertia."""
+    one, two, three = np.exp(logarithms)  # squared diagonal of L
     s12, s13, s23 = -products
-    l21, l31 = s12**2 / one, s13**2 / one  # squares
+    l21, l31 = s12**2 / one, s13**2 / one  # squared elements of L
     l32 = (s23 - s12 * s13 / one) ** 2 / two
     return np.array([one, two + l21, three + l31 + l32])
 
 
 def _find_links(names: Sequence[str]) -> List[Tuple[str, List[int]]]:
-    """Return the links with three free moments, and the places of these."""
+    """Return the links with three free moments, and the indices of these moments."""
     links = [name.rpartition(".")[0] for name in names if name.endswith(f".{_MOMENTS[0]}")]
     return [
         (link, [list(names).index(f"{link}.{moment}") for moment in _MOMENTS])

@@ -44,23 +44,23 @@ class Fit(NamedTuple):
     Attributes
     ----------
     values : dict of str to float
-        Value of each free parameter; near the start value if it is not identifiable.
+        Value of each free parameter; it stays near the start value if it is not identifiable.
     start, units : dict
         Start value and unit of each parameter.
     identified : Identifiability
-        Standard deviations, covariance, and identifiable combinations.
+        Standard deviations, covariance and identifiable combinations.
     shift : float
-        Lag of the measurements behind the commands, s.
+        Lag of the measurements relative to the commands, s.
     train : dict of str to pair of float
         RMS residual of each channel with the start values and with the fitted values, in the unit
-        of the channel. The starts of the horizons are fitted.
+        of the channel. The initial states of the horizons are fitted in both cases.
     held_out : dict of str to pair of float
-        The same for the held-out horizons.
+        RMS residuals of the held-out horizons, as in `train`.
     model : Model
         Model with the fitted values.
     motion : list of (str, Log)
-        Measured motion, and those of the fitted and the initial model; each horizon starts from a
-        measured state. Empty without the channels position and attitude.
+        Measured motion, and motion of the fitted and the initial model; each horizon starts from a
+        measured state. Empty unless the channels contain position and attitude.
     """
 
     values: Dict[str, float]
@@ -75,7 +75,7 @@ class Fit(NamedTuple):
 
     @property
     def combinations(self) -> List[Combination]:
-        """Identifiable sums of parameters that are not identifiable one by one."""
+        """Identifiable sums of parameters that are not identifiable individually."""
         return self.identified.combinations
 
     def __repr__(self) -> str:
@@ -84,7 +84,7 @@ class Fit(NamedTuple):
         return f"<Fit: {', '.join(found)}>"
 
     def describe(self) -> List[str]:
-        """Describe the identifiability of the parameters, a line for each statement."""
+        """Describe the identifiability of the parameters, one statement per line."""
         lines = [
             f"only the sum is identifiable: {each} = {each.value:.6g} +- {each.deviation:.2g}"
             for each in self.combinations
@@ -96,10 +96,10 @@ class Fit(NamedTuple):
         return [*lines, f"singular values of the unit derivatives: {values}"]
 
     def list_residuals(self) -> List[Tuple[str, str, List[float]]]:
-        """List channel, unit and RMS residuals.
+        """List the channel, unit and RMS residuals of each channel.
 
         The residuals are those of the start values, of the fitted values, and of the fitted values
-        on the held-out horizons.
+        on the held-out horizons (NaN without any).
         """
         nan = float("nan")
         return [
@@ -128,35 +128,36 @@ def fit(
 ) -> Fit:
     """Fit parameters of a model to a flight log.
 
-    The log is split into horizons, and each is simulated from its first row on a `BatchSimulation`.
-    scipy's least_squares minimises the residuals, weighted by their estimated noise.
+    The log is split into horizons. A `BatchSimulation` simulates each horizon from its first row.
+    SciPy's ``least_squares`` minimises the residuals, weighted by their estimated noise.
 
     Parameters
     ----------
     model, engine, world, dt, xacro_args, ignore
         As for `Simulation`.
     log
-        A log or its file, with pose, velocities and rotor speeds.
+        Log or log file with pose, velocities and rotor speeds.
     free
-        Names of the free parameters: ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx``, ``xacro.ARG``.
+        Names of the free parameters: ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx`` or ``xacro.ARG``.
     commands
         Commands as for `Simulation.run` (default: topic ``vel_cmd`` of the log, else computed from
         the measured rotor speeds).
     horizon
         Length of a horizon, s.
     channels
-        Channels to compare: some of "position", "attitude", "velocity", "rates", "rotors" (default:
-        all but "velocity").
+        Channels to compare: some of "position", "attitude", "velocity", "rates" and "rotors"
+        (default: all but "velocity").
     sensed
         Topic of the log with measured pose and velocities (default: the state).
     bounds
-        Minimum and maximum value by name (default: non-negative parameters stay non-negative).
+        Minimum and maximum value by parameter name (default: non-negative parameters stay
+        non-negative).
     shift
-        Maximum lag of the measurements behind the commands, s; the lag is fitted too.
+        Maximum lag of the measurements relative to the commands, s; the lag is fitted.
     parameters
-        As for `Simulation`: fixed values, and start values of free parameters.
+        As for `Simulation`: fixed values, and start values of the free parameters.
     progress
-        Called as progress(done, total).
+        Function called as progress(done, total).
 
     Returns
     -------
@@ -168,9 +169,9 @@ def fit(
     InputError
         If an argument is invalid.
     FlightError
-        If flights from measured states fail.
+        If flights that start from measured states fail.
     KeyboardInterrupt
-        With the attribute `model`, the model with the values of the last round.
+        On Ctrl-C. The attribute `model` is the model with the values of the last round.
     """
     arguments_given = dict(locals())
     options = ("parameters", "world", "dt", "xacro_args", "ignore")
@@ -259,7 +260,7 @@ def _make_fit(
 
 
 def _compute_rms(problem: Problem, values: np.ndarray) -> Dict[str, float]:
-    """Compute the RMS residual of each channel with fitted starts; infinite after a failure."""
+    """Compute the RMS residual of each channel, with fitted starts; infinite if a flight fails."""
     try:
         problem.linearise_starts(values)
         problem.correct_starts(values)
@@ -270,7 +271,7 @@ def _compute_rms(problem: Problem, values: np.ndarray) -> Dict[str, float]:
 
 
 def _find_shift(problem: Problem, most: int) -> int:
-    """Find the lag in steps, from coarse to fine, with a short fit for each."""
+    """Find the lag in steps by a coarse-to-fine search, with a short fit for each lag."""
     costs: Dict[int, float] = {}
 
     def cost(steps: int) -> float:

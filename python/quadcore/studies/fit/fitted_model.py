@@ -1,4 +1,4 @@
-"""The fitted model, expanded again for each value of a xacro argument."""
+"""Model of a fit, expanded again for each value of a free xacro argument."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ class FittedModel:
     model : Model
         Model with the start values.
     simulation : Simulation
-        Simulation of this model.
+        Simulation of `model`.
     arguments : dict of str to str
-        Start value of each ``xacro.ARG``; empty unless one is free.
+        Start value of each ``xacro.ARG``; empty unless a xacro argument is free.
     make : dict
-        Keywords of `BatchSimulation` except n, dt and parameters.
+        Keyword arguments of `BatchSimulation` except n, dt and parameters.
     fixed : dict of str to str
-        Parameters that are set and not free.
+        Parameters that are set but not free.
 
     Raises
     ------
     InputError
-        If an argument is invalid, or a xacro argument is free but the model has no file.
+        If an argument is invalid, or a xacro argument is free but `model` is not a file.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class FittedModel:
         }
 
     def make_model(self, values: Mapping[str, float]) -> Model:
-        """Read the model with values of the free parameters and the fixed values."""
+        """Read the model with the fixed values and these values of the free parameters."""
         make = self.make
         of_xacro, others = split_xacro_arguments(values, make["xacro_args"])
         read, _ = read_both(make["model"], make["world"], of_xacro, make["ignore"])

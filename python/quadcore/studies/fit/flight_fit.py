@@ -1,4 +1,4 @@
-"""Fit of a model to recordings of real flights by the errors of its predictions."""
+"""Fit of a model to recordings of real flights, by the errors of its predictions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .windows import Windows, make_windows
 
 _PRODUCTS = (".ixy", ".ixz", ".iyz")
 _NODES_OF_HALF, _NODES_OF_INSTRUMENTS = 2, 5
-"""Minimum samples on each side of polynomials through half of the samples."""
+"""Minimum number of samples on each side of the polynomials through half of the samples."""
 
 
 class FlightFit(NamedTuple):
@@ -29,12 +29,12 @@ class FlightFit(NamedTuple):
     Attributes
     ----------
     values, start, deviations : dict of str to float
-        Fitted value, start value and standard deviation of each parameter; the deviation is NaN if
+        Fitted value, start value and standard deviation of each parameter. The deviation is NaN if
         the flights do not identify the parameter.
     units : dict of str to str
-        Units.
+        Unit of each parameter.
     trims : ndarray (flights, trims)
-        Delay (s) and constant torque (N m) of each flight.
+        Delay (s), speed factor and constant torque (N m) of each flight.
     windows : Windows
         Windows of the fitted flights.
     """
@@ -61,23 +61,23 @@ def fit_flights(
     Parameters
     ----------
     fitted
-        Model.
+        Model to fit.
     parameters
         Free parameters of the model.
     free_inputs
-        Names of `INPUTS` that are free.
+        Names in `INPUTS` that are free.
     flights
         Prepared flights.
     given
-        Start values of `INPUTS`, or fixed values of those that are not free. Without a given delay,
-        the delay is free.
+        Values of `INPUTS`: start values of the free ones, fixed values of the others. Without a
+        given delay, the delay is free.
     limits
-        Bounds of `MAP` that differ from `INPUT_BOUNDS`.
+        Bounds of parameters in `MAP` that replace `INPUT_BOUNDS`.
 
     Raises
     ------
     FlightError
-        If every prediction of the start values fails.
+        If every prediction with the start values fails.
     """
     windows = make_windows(flights)
     predictor = Predictor(fitted, windows)
@@ -112,7 +112,7 @@ def fit_flights(
     if any(flight.rotors is not None for flight in flights):  # the inputs are noisy
         halves = [_make_half(search, flights, half) for half in (0, 1)]
         best = estimate(halves, begin_x, least, free)
-    if best is None:  # the flights show hardly more than noise
+    if best is None:  # the flights contain little more than noise
         deviations = {n: float("nan") if f else 0.0 for n, f in zip(names, free)}
     else:
         x = best
@@ -127,12 +127,12 @@ def fit_flights(
 
 
 def calibrate_trims(predictor: Predictor, values: Dict[str, float]) -> np.ndarray:
-    """Find delay and constant torque of each flight from the windows of `predictor`.
+    """Find the trims (delay, speed factor, constant torque) of each flight from its windows.
 
     Parameters
     ----------
     values
-        Values of the model and of `INPUTS`. If they contain a delay, it is fixed.
+        Values of the model parameters and of `INPUTS`. A delay in them is fixed.
 
     Returns
     -------
@@ -153,7 +153,7 @@ def calibrate_trims(predictor: Predictor, values: Dict[str, float]) -> np.ndarra
 
 
 def _make_half(search: Search, flights: Sequence[PreparedFlight], number: int) -> Half:
-    """Make the searches on the even (0) or odd (1) samples."""
+    """Make the searches with the even (0) or odd (1) samples."""
     split = [split_samples(flight, number) for flight in flights]
     smooth = make_windows([smooth_rotors(flight) for flight in split], _NODES_OF_INSTRUMENTS)
     raw = make_windows(split, _NODES_OF_HALF)
@@ -161,20 +161,20 @@ def _make_half(search: Search, flights: Sequence[PreparedFlight], number: int) -
 
 
 def _list_scaled(windows: Windows) -> List[bool]:
-    """Return for each flight whether it shows a factor of the speeds: thrust against weight."""
+    """Return whether each flight shows the factor on the speeds: commands and pose are needed."""
     return [flight.rotors is None and flight.has_pose for flight in windows.flights]
 
 
 def _fix_delay(search: Search, free: np.ndarray) -> None:
-    """Fix the delay of all flights."""
+    """Fix the delays of all flights."""
     free[search.parameters :: len(search.trim_sizes)] = False
 
 
 def _choose_delays(search: Search, x: np.ndarray) -> np.ndarray:
-    """Start each flight with measured rotor speeds at the best of some delays.
+    """Start the delay of each flight with measured rotor speeds at the best of several values.
 
-    The errors of predictions have several minima over the delay of an input that varies quickly.
-    Commands have delays near their start.
+    For an input that varies quickly, the prediction error has several minima over the delay. The
+    delay of commands is close to its start value.
     """
     flight, width = search.predictor.windows.flight, len(search.trim_sizes)
     places = search.parameters + width * np.arange(len(search.predictor.windows.flights))
@@ -193,6 +193,6 @@ def _choose_delays(search: Search, x: np.ndarray) -> np.ndarray:
 
 
 def _fix_speed(search: Search, free: np.ndarray, is_free: Sequence[bool]) -> None:
-    """Fix the factor of the speeds of some flights."""
+    """Fix the speed factor of the flights for which `is_free` is false."""
     width = len(search.trim_sizes)
     free[search.parameters + 1 :: width] = is_free

@@ -10,46 +10,46 @@ from ..._core import InputError, Rotor
 from ...simulation.batch import BatchSimulation, BatchState
 from .record import CHANNELS, Record
 
-_FEW = 1024  # up to this number of vehicles, one thread is as fast as several
+_FEW = 1024  # up to this number of vehicles, one thread is as fast as several threads
 _SETTLED = 40
-"""Steps until ODE's hinges settle under load; a state does not contain their deflection."""
+"""Steps until the hinges of ODE settle under load; a state does not contain their deflection."""
 
 
 class Horizons:
-    """Pieces of a record, each starting from a measured state.
+    """Pieces of a record, each simulated from a measured state.
 
     Parameters
     ----------
     record
         Record of the flight.
     make
-        Keywords of `BatchSimulation` except n and parameters.
+        Keyword arguments of `BatchSimulation` except n and parameters.
     fixed
-        Fixed parameters of all horizons.
+        Parameters that are equal for all horizons.
     dt
         Step, s.
     length
         Length of a horizon, s.
     channels
-        Names of the compared `CHANNELS`.
+        Names of the `CHANNELS` to compare.
     rotors
-        Rotors of the vehicle, from which `_make_commands` computes missing commands.
+        Rotors of the vehicle. `_make_commands` uses them to compute missing commands.
     part
-        Called with the number of a piece; returns whether to use it.
+        Function called with the number of a piece; returns whether to use the piece.
 
     Attributes
     ----------
     record : Record
-        Record without rows that follow the previous row too closely.
+        Record without rows that are too close to the previous row.
     rows : ndarray (count, rows)
-        Compared rows of the record of each piece.
+        Rows of the record that each piece compares.
     count : int
         Number of pieces.
     width : int
         Number of compared values per piece.
     corrections : int
-        Number of corrections of each start: position, turn, velocity, rates, and the rotor speeds
-        if these are compared.
+        Number of corrections of each initial state: position, rotation, velocity, rates, and the
+        rotor speeds if they are compared.
     """
 
     def __init__(
@@ -97,22 +97,22 @@ class Horizons:
         self.sizes = [sizes[name] for name in self.channels]
         self.width = most * sum(self.sizes)
         self.shift = 0
-        """Lag of the measurements behind the commands, steps."""
+        """Lag of the measurements relative to the commands, in steps."""
 
     def list_channels(self) -> np.ndarray:
-        """Return the channel index of each compared value."""
+        """Return the channel index of each compared value of a piece."""
         one = np.repeat(np.arange(len(self.sizes)), self.sizes)
         return np.tile(one, self.width // len(one))
 
     def fly(self, parameters: Sequence[Mapping[str, float]], starts: np.ndarray) -> np.ndarray:
-        """Simulate every piece with each set of parameters, from corrected starts.
+        """Simulate every piece with each set of parameters, from corrected initial states.
 
         Parameters
         ----------
         parameters
-            Values by name, for each group.
+            Parameter values by name, for each set.
         starts
-            Corrections, shape (groups, count, corrections).
+            Corrections of the initial states, shape (sets, count, corrections).
 
         Returns
         -------
@@ -155,11 +155,11 @@ class Horizons:
             last = int(np.searchsorted(steps, steps[first] + length, "right")) - 1
             if last > first:
                 found.append((first, last))
-            first = max(last, first + 1)  # gaps may be longer than a horizon
+            first = max(last, first + 1)  # a gap may be longer than a horizon
         return found
 
     def _find_commands(self, end: int) -> Dict[int, np.ndarray]:
-        """Return the row of each piece in the commands, by the steps at which they change."""
+        """Return the command row of each piece, by the steps at which the commands change."""
         since = (self._command_steps[None, :] + self.shift) - self._begin[:, None]
         inside = since[(since > 0) & (since < end)]
         steps = np.array([0, *np.unique(inside)])
@@ -185,7 +185,7 @@ class Horizons:
         )
 
     def _compare(self, state: BatchState, rows: np.ndarray) -> np.ndarray:
-        """Return simulated minus measured values, for rows that may lie between steps."""
+        """Return simulated minus measured values; the rows may lie between steps."""
         r, late = self.record, self._late[rows, None]
         parts: Dict[str, Callable[[], np.ndarray]] = {
             "position": lambda: state.position + late * state.linear_velocity - r.position[rows],
@@ -200,7 +200,7 @@ class Horizons:
 
 
 def _group_by_step(offsets: np.ndarray) -> Dict[int, Any]:
-    """Return the indices of the entries with each value, by value."""
+    """Group the indices of the entries by value."""
     order = np.argsort(offsets, axis=None, kind="stable")
     values, first = np.unique(offsets.ravel()[order], return_index=True)
     groups = np.split(order, first[1:])
@@ -210,7 +210,7 @@ def _group_by_step(offsets: np.ndarray) -> Dict[int, Any]:
 
 
 def _drop_close_rows(record: Record, dt: float) -> Record:
-    """Drop rows that follow the previous row too closely."""
+    """Drop rows that are too close to the previous row."""
     steps = np.rint((record.time - record.time[0]) / dt).astype(int)
     every = int(np.median(np.diff(steps)))
     kept = [0]
@@ -222,10 +222,10 @@ def _drop_close_rows(record: Record, dt: float) -> Record:
 
 
 def _make_commands(record: Record, dt: float, rotors: Sequence[Rotor]) -> Any:
-    """Return commands and the steps at which they start.
+    """Return the commands, and the steps at which they become valid.
 
-    Missing commands c follow from the measured speeds w and the motor model tau dw/dt = r c - w
-    with r = `Rotor.rate_per_command`: c = (w + tau dw/dt) / r.
+    Missing commands c are computed from the measured speeds w and the motor model tau dw/dt = r c -
+    w with r = `Rotor.rate_per_command`: c = (w + tau dw/dt) / r.
     """
     start = record.time[0]
     if record.commands is not None:
@@ -243,7 +243,7 @@ def _make_commands(record: Record, dt: float, rotors: Sequence[Rotor]) -> Any:
 
 
 def _joint_angles(record: Record) -> np.ndarray:
-    """Return the angles of the joints, 0 in the first row; (-pi, pi]."""
+    """Return the joint angles in (-pi, pi], rad; they are 0 in the first row."""
     mean = (record.rotors[1:] + record.rotors[:-1]) / 2
     turned = np.cumsum(mean * np.diff(record.time)[:, None], axis=0)
     angles: np.ndarray = np.vstack([np.zeros(record.rotors.shape[1]), turned])
@@ -258,7 +258,7 @@ def _multiply(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _turn(q: np.ndarray, turn: np.ndarray) -> np.ndarray:
-    """Turn quaternions by a small angle about body axes, rad."""
+    """Rotate quaternions by small angles about the body axes, rad."""
     half = turn / 2
     small = np.hstack([half, np.ones((len(q), 1))])
     turned = _multiply(q, small / np.linalg.norm(small, axis=1, keepdims=True))
@@ -266,7 +266,7 @@ def _turn(q: np.ndarray, turn: np.ndarray) -> np.ndarray:
 
 
 def _turn_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the small turn from a to b in the axes of a, rad."""
+    """Return the small rotation from a to b in the axes of a, rad."""
     inverse = a * np.array([-1, -1, -1, 1])
     apart = _multiply(inverse, b)
     turn: np.ndarray = 2 * np.sign(apart[:, 3:]) * apart[:, :3]

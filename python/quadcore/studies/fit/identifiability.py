@@ -1,7 +1,7 @@
 """Identifiability of parameters: standard deviations, and identifiable combinations.
 
-The analysis uses the singular values of the derivative with columns of unit length. A near-zero
-singular value marks an unidentifiable combination.
+The analysis uses the singular values of the derivative with columns scaled to unit length. A
+near-zero singular value marks an unidentifiable combination.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ from typing import Dict, List, NamedTuple, Sequence
 import numpy as np
 
 _SAME = 1e-3
-"""Singular value below which a direction counts as unidentifiable."""
+"""Relative singular value below which a direction is unidentifiable."""
 
 _NOTHING = 1e-9
-"""Relative length of a column below which a parameter has no effect."""
+"""Relative length of a column below which the parameter has no effect."""
 
 _INVOLVED = 0.05
 
 
 class Combination(NamedTuple):
-    """Parameters that are identifiable only as a weighted sum."""
+    """Parameters of which only a weighted sum is identifiable."""
 
     factors: Dict[str, float]
-    """Factor of each parameter; the first is 1."""
+    """Weight of each parameter; the first weight is 1."""
     value: float
     deviation: float
 
@@ -41,9 +41,9 @@ class Identifiability(NamedTuple):
     deviations: Dict[str, float]
     """Standard deviation of each parameter; NaN if it is not identifiable."""
     covariance: np.ndarray
-    """Covariance, with zeros in unidentifiable directions."""
+    """Covariance matrix, with zeros in unidentifiable directions."""
     singular_values: List[float]
-    """Singular values of the derivative with unit columns; near 1: independent parameters."""
+    """Singular values of the derivative with unit columns; near 1 for independent parameters."""
     combinations: List[Combination]
     """Identifiable sums of parameters."""
     without_effect: List[str]
@@ -64,11 +64,11 @@ def analyse(
     names, values
         Names and fitted values of the parameters.
     sizes
-        Typical values.
+        Typical magnitudes of the parameters.
     derivative, left
-        Derivative of the weighted residuals, and the residuals.
+        Derivative of the weighted residuals, and the weighted residuals.
     freedom
-        Number of residuals minus number of fitted values.
+        Degrees of freedom: the number of residuals minus the number of fitted values.
     """
     lengths = np.linalg.norm(derivative, axis=0)
     acts = lengths * sizes > _NOTHING * np.max(lengths * sizes, initial=0)
@@ -94,7 +94,7 @@ def analyse(
         first = derivative[:, of[0]]
         factors = first @ derivative[:, of] / (first @ first)
         deviation = float(np.sqrt(factors @ covariance[np.ix_(of, of)] @ factors))
-        # The pseudoinverse is exact for a sum of rank one.
+        # For a sum of rank one, the pseudoinverse is exact.
         named = {names[i]: float(factor) for i, factor in zip(of, factors)}
         combinations.append(Combination(named, float(factors @ values[of]), deviation))
     without = [name for name, is_active in zip(names, acts) if not is_active]
@@ -103,7 +103,7 @@ def analyse(
 
 
 def _group_parameters(directions: np.ndarray) -> List[List[int]]:
-    """Group parameters that occur in one unidentifiable direction."""
+    """Group parameters that occur in the same unidentifiable direction."""
     groups: List[List[int]] = []
     for direction in np.abs(directions) > _INVOLVED:
         joined = set(np.flatnonzero(direction).tolist())

@@ -1,4 +1,4 @@
-"""Files with the map from motor commands to rotor speeds, next to a fitted model."""
+"""Files that define the map from motor commands to rotor speeds, next to a fitted model."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from .inputs import DELAY, FULL_VOLTAGE, INPUTS, MAP
 
 
 def name_input_file(model: Path) -> Path:
-    """Return the name of the file that belongs to a model."""
+    """Return the path of the input file of a model."""
     return model.with_suffix(".inputs.yaml")
 
 
 def write_inputs(path: Path, values: Mapping[str, float]) -> None:
-    """Write the parameters of the map, and a fixed delay; raises `InputError` if that fails."""
+    """Write the parameters of the map and a fixed delay; raise `InputError` if this fails."""
     lines = [
         f"# Rotor speed [rad/s] = speed command^exponent (voltage / {FULL_VOLTAGE:g} V)^battery,",
         "# with commands from 0 to 1.",
@@ -28,12 +28,12 @@ def write_inputs(path: Path, values: Mapping[str, float]) -> None:
 
 
 def read_inputs(path: Path) -> Dict[str, float]:
-    """Read a file of `write_inputs`.
+    """Read a file written by `write_inputs`.
 
     Raises
     ------
     InputError
-        If the file is missing, or a parameter is missing, unknown, or no number.
+        If the file is missing, or a parameter is missing, unknown or not a number.
     """
     import yaml  # slow to import
 
@@ -56,7 +56,7 @@ def read_inputs(path: Path) -> Dict[str, float]:
 
 
 def find_inputs(given: Optional[Path], model: str) -> Optional[Dict[str, float]]:
-    """Read the named file, else the one next to the model, or return None."""
+    """Read the given file, or else the file next to the model; return None if there is no file."""
     if given is not None:
         return read_inputs(given)
     next_to = name_input_file(Path(model))

@@ -1,4 +1,4 @@
-"""Rotor speeds that the inputs of a recording demand."""
+"""Rotor speeds that correspond to the inputs of a recording."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from .prepared import PreparedFlight
 from .smoothing import fit_locally
 
 MAP = {"inputs.speed": "rad/s", "inputs.exponent": "", "inputs.battery": ""}
-"""Parameters of the map from commands to speeds: w = speed u^exponent (V / full)^battery."""
+"""Parameters of the map from commands to rotor speeds: w = speed u^exponent (V / full)^battery."""
 
 DELAY = "inputs.delay"
-"""Delay of the inputs behind the pose. Each flight has its own, unless it is fixed."""
+"""Delay of the inputs relative to the pose. Each flight has its own delay unless it is fixed."""
 
 INPUTS = {**MAP, DELAY: "s"}
-"""Parameters of the inputs, with their units."""
+"""Parameters of the inputs with their units."""
 
-_LONGEST = 0.12  # s
+_LONGEST = 0.12  # s; maximum magnitude of the delay
 
 INPUT_BOUNDS = {
     "inputs.speed": (0.0, np.inf),
@@ -30,32 +30,33 @@ INPUT_BOUNDS = {
     "inputs.battery": (0.0, 2.0),
     DELAY: (-_LONGEST, _LONGEST),
 }
-"""Minimum and maximum: exponents lie between those of a speed controller and of a thrust over speed
-squared. Measured rotor speeds may be late, and have negative delays."""
+"""Minimum and maximum of each parameter. The exponents cover a speed controller and a thrust
+proportional to the squared speed. Measured rotor speeds may be late, which gives a negative
+delay."""
 
 _PREFIX = "inputs."
 
 FULL_VOLTAGE = 4.2
-"""Voltage that `inputs.speed` refers to, V."""
+"""Battery voltage at which `inputs.speed` is defined, V."""
 
-_MEMORY = 0.4  # s before a window that count for the speeds at its start
-_STEP = 5e-3  # s
+_MEMORY = 0.4  # s; inputs before a window that affect the speeds at its start
+_STEP = 5e-3  # s; step of the integration over these inputs
 _DENSE = 2.0
-"""Samples of rotor speeds per tick from which they are averaged."""
+"""Number of rotor speed samples per tick above which they are averaged."""
 
 TICK = 5e-3
-"""Duration of a command, s: the motions of a vehicle and its motors take longer."""
+"""Duration of a constant command, s; shorter than the time constants of vehicles and motors."""
 
 
 def split_inputs(
     parameters: Optional[Mapping[str, Any]],
 ) -> Tuple[Dict[str, float], Dict[str, Any]]:
-    """Split parameters into those of the inputs and the other parameters.
+    """Split parameters into those of the inputs and others.
 
     Raises
     ------
     InputError
-        If a parameter of the inputs is unknown, no number, or out of its bounds.
+        If an input parameter is unknown, not a number, or out of bounds.
     """
     given, others = {}, {}
     for name, value in (parameters or {}).items():
@@ -80,14 +81,14 @@ def split_inputs(
 def demand_speeds(
     flight: PreparedFlight, time: np.ndarray, values: Mapping[str, float], rotors: int
 ) -> np.ndarray:
-    """Return the demanded speed of each rotor, unsigned, rad/s.
+    """Return the speed of each rotor that the inputs demand, unsigned, rad/s.
 
     Parameters
     ----------
     flight
-        Flight with commands, or else measured rotor speeds.
+        Flight with measured rotor speeds or commands; measured speeds take precedence.
     time : ndarray
-        Times of any shape, s.
+        Times, s; any shape.
     values
         Values of `MAP`.
     rotors
@@ -114,9 +115,9 @@ def demand_speeds(
 
 
 def _trace_rotors(rotors: Series, time: np.ndarray) -> np.ndarray:
-    """Interpolate measured speeds by a cubic spline, without smoothing, which would bias a fit.
+    """Interpolate measured speeds by a cubic spline; smoothing would bias a fit.
 
-    Samples that are closer than a tick are averaged by local polynomials first.
+    Densely sampled speeds are first averaged by local polynomials.
     """
     from scipy.interpolate import CubicSpline
 
@@ -130,21 +131,21 @@ def _trace_rotors(rotors: Series, time: np.ndarray) -> np.ndarray:
 def lead_speeds(
     flight: PreparedFlight, start: np.ndarray, ticks: int, constants: np.ndarray
 ) -> np.ndarray:
-    """Return the commands that give the measured speeds at the ends of the ticks.
+    """Return the commands that produce the measured speeds at the ends of the ticks.
 
-    A motor of the first order goes from w0 to w1 = e w0 + (1 - e) c with e = exp(-tick/tau), which
-    gives the command c.
+    During a tick, a first-order motor changes its speed from w0 to w1 = e w0 + (1 - e) c with e =
+    exp(-tick/tau). This equation gives the command c.
 
     Parameters
     ----------
     flight
         Flight with measured rotor speeds.
     start : ndarray (n,)
-        Times, s.
+        Times at which the first ticks start, s.
     ticks
         Number of ticks.
     constants : ndarray (rotors,)
-        Time constants tau, s.
+        Motor time constants tau, s.
 
     Returns
     -------
@@ -163,16 +164,16 @@ def lag_speeds(
     values: Mapping[str, float],
     constants: np.ndarray,
 ) -> np.ndarray:
-    """Return the speeds at some times behind first-order lags, shape (n, rotors).
+    """Return the demanded speeds after first-order lags, at some times; shape (n, rotors).
 
     Parameters
     ----------
     flight, values
         As for `demand_speeds`.
     start : ndarray (n,)
-        Times, s, already moved by the delay.
+        Times after correction by the delay, s.
     constants : ndarray (rotors,)
-        Time constants, s.
+        Motor time constants, s.
     """
     ages = np.arange(0.5 * _STEP, _MEMORY, _STEP)
     demanded = demand_speeds(flight, start[:, None] - ages, values, len(constants))
@@ -187,14 +188,14 @@ def guess_inputs(
     weight: float,
     given: Mapping[str, float],
 ) -> Dict[str, float]:
-    """Guess the map from the balance of thrust and weight in the mean of the flights.
+    """Guess the map from the balance of mean thrust and weight.
 
     Parameters
     ----------
     weight
         Weight of the vehicle, N.
     given
-        Known values of `INPUTS`.
+        Known values of `INPUTS`, which replace the guesses.
     """
     values = {"inputs.speed": 1.0, "inputs.exponent": 1.0, "inputs.battery": 0.5, **given}
     if "inputs.speed" in given:

@@ -1,4 +1,4 @@
-"""Estimates without the bias of noisy measurements, and their standard deviations."""
+"""Estimates without the bias from noisy measurements, and their standard deviations."""
 
 from __future__ import annotations
 
@@ -11,43 +11,43 @@ if TYPE_CHECKING:
 
 _ROUNDS = 12
 _RELEASED = 3
-"""Rounds in which coordinates may leave their bounds again."""
+"""Number of initial rounds in which coordinates may leave their bounds."""
 _STILL = 0.03
-"""Change relative to the deviation at which the search ends."""
+"""Change relative to the standard deviation below which the search ends."""
 _LONGEST_STEP = 0.5
-"""Maximum change of a coordinate in a round, relative to the deviation of the prior."""
+"""Maximum change of a coordinate per round, relative to the deviation of the prior."""
 _RUNAWAY = 2.0
-"""Distance from the start, in deviations of the prior, at which least squares are no start."""
+"""Distance from the start, in deviations of the prior, that marks a failed least-squares fit."""
 _BLOCKS = 12
-"""Blocks of windows per fit, if each gets at least `_SHORTEST` windows."""
+"""Maximum number of blocks of windows per fit; each has at least `_SHORTEST` windows."""
 _SHORTEST = 4
-"""Windows in a block: 1 s, longer than the time that windows share."""
+"""Minimum number of windows in a block: 1 s, longer than the overlap of windows."""
 _CLOSE = 1e-4
-"""Distance of a coordinate from its bound below which the bound determines it."""
+"""Distance of a coordinate from its bound below which the bound is active."""
 _UNKNOWN = 1e-9
-"""Eigenvalue, relative to the maximum, below which a direction has no effect."""
+"""Relative eigenvalue below which a direction has no effect."""
 _RELIABLE = 0.2
-"""Part of a squared derivative that is not noise, below which it gives no information."""
+"""Fraction of a squared derivative that is not noise; below it, a direction is ignored."""
 _LEVERAGE = 0.9
-"""Maximum part of a direction that one block may determine."""
+"""Maximum leverage of one block on a direction."""
 _LEARNT = 0.5
-"""Deviation relative to that of the prior from which a parameter is not identifiable."""
+"""Deviation relative to that of the prior above which a parameter is not identifiable."""
 _VAGUE = 0.4
-"""Deviation of a positive parameter, relative to it, from which it is not identifiable."""
+"""Relative deviation of a positive parameter above which it is not identifiable."""
 _POSITIVE = (".ixx", ".iyy", ".izz", ".mass")
 _NORMAL = 1.959964
-"""Quantile of the normal distribution for 95 %."""
+"""97.5 % quantile of the normal distribution, for 95 % intervals."""
 
 
 class Half(NamedTuple):
-    """Part of the samples.
+    """Half of the samples.
 
     Attributes
     ----------
     search : Search
-        Search that gives the errors.
+        Search that computes the errors.
     smooth : Search
-        Search on smoothed samples that gives the instruments, which smoothing does not bias.
+        Search with smoothed samples that computes the instruments; smoothing does not bias them.
     """
 
     search: Search
@@ -55,18 +55,18 @@ class Half(NamedTuple):
 
 
 class _Equations(NamedTuple):
-    """Estimating equations, in coordinates in which the squared derivatives are the unit matrix.
+    """Estimating equations in coordinates that whiten the squared derivatives.
 
     Attributes
     ----------
     moving : ndarray (coordinates,) of bool
-        Coordinates that the equations contain.
+        Coordinates that the equations include.
     white : ndarray (moving coordinates, k)
-        Coordinates of the free parameters for each of these.
+        Matrix from whitened to moving coordinates.
     score : ndarray (k,)
-        Derivatives of one half times the errors of the other, summed over the windows.
+        Derivatives of one half times the errors of the other half, summed over the windows.
     slope : ndarray (k, k)
-        Derivative of the score; 1 without noise, 0 for a direction with noise alone.
+        Derivative of the score: 1 without noise, 0 for a direction that contains only noise.
     covariance : ndarray (k, k)
         Covariance of the score.
     blocks : int
@@ -84,31 +84,31 @@ class _Equations(NamedTuple):
 def estimate(
     halves: Sequence[Half], start: np.ndarray, x: np.ndarray, free: np.ndarray
 ) -> Optional[np.ndarray]:
-    """Estimate coordinates from two halves of the samples, without the bias of noisy inputs.
+    """Estimate coordinates from two halves of the samples, without the bias from noisy inputs.
 
-    Least squares are biased if inputs or initial states are noisy, because the derivatives then
-    contain the noise of the errors. The derivatives of one half of the samples are instruments for
-    the errors of the other half, the noise of which is independent (O. Reiersol, "Confluence
-    analysis by means of instrumental sets of variables", 1945; T. Soderstrom, "Errors-in-variables
-    methods in system identification", Automatica 43, 2007). A weak prior keeps directions that the
-    flights do not identify at the start.
+    Least squares are biased if inputs or initial states are noisy, because the noise then occurs in
+    both the derivatives and the errors. The derivatives from one half of the samples are
+    instruments for the errors of the other half, because their noise is independent. See O.
+    Reiersol, "Confluence analysis by means of instrumental sets of variables", 1945, and T.
+    Soderstrom, "Errors-in-variables methods in system identification", Automatica 43, 2007. In
+    directions that the flights do not identify, a weak prior keeps the estimate near the start.
 
     Parameters
     ----------
     halves
-        Even and odd samples.
+        Searches with the even and with the odd samples.
     start
         Start values.
     x
-        Least squares.
+        Least-squares estimate.
     free
         Coordinates to estimate.
 
     Returns
     -------
     ndarray
-        Coordinates. If the search does not settle, these are the least squares, or None if
-        the least squares ran away.
+        Estimated coordinates. If the search does not converge, the result is the least-squares
+        estimate, or None if that estimate is too far from the start.
     """
     low, high = halves[0].search.find_bounds(len(x))
     prior = halves[0].search.find_prior(len(x))
@@ -131,15 +131,15 @@ def compute_deviations(
 ) -> Dict[str, float]:
     """Compute the standard deviation of each parameter; NaN if it is not identifiable.
 
-    The deviations come from a sandwich estimator with blocks of consecutive windows as clusters,
-    for these share samples and model errors. It corrects for the leverage of each block (R. M. Bell
-    and D. F. McCaffrey, Survey Methodology 28, 2002, of the kind of the jackknife). The deviations
-    are scaled so that 1.96 of them are the 95 % range of the t distribution.
+    The deviations come from a sandwich estimator. Its clusters are blocks of consecutive windows,
+    because these share samples and model errors. The estimator corrects for the leverage of each
+    block, similar to a jackknife (R. M. Bell and D. F. McCaffrey, Survey Methodology 28, 2002). The
+    deviations are scaled so that a factor of 1.96 gives the 95 % range of the t distribution.
 
     Parameters
     ----------
     halves
-        Even and odd samples, or all.
+        Searches with the even and odd samples, or one with all samples.
     start, free
         As for `estimate`.
     x
@@ -157,7 +157,7 @@ def compute_deviations(
 
 
 def _list_inner(x: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return which coordinates lie between their bounds."""
+    """Return whether each coordinate lies strictly between its bounds."""
     inner: np.ndarray = (x - low > _CLOSE) & (high - x > _CLOSE)
     return inner
 
@@ -191,14 +191,14 @@ def _make_equations(halves: Sequence[Half], x: np.ndarray, moving: np.ndarray) -
 
 
 def _drop_noise(slope: np.ndarray) -> np.ndarray:
-    """Set the slope of directions that are hardly more than noise to zero."""
+    """Set the slope to zero in directions that contain little more than noise."""
     reliability, axes = np.linalg.eigh(slope)
     dropped: np.ndarray = (axes * np.where(reliability > _RELIABLE, reliability, 0)) @ axes.T
     return dropped
 
 
 def _whiten(squares: np.ndarray) -> np.ndarray:
-    """Return W with W^T squares W = 1, without directions that have no effect."""
+    """Return W with W^T squares W = 1; directions without effect are omitted."""
     scale = np.sqrt(np.maximum(np.diag(squares), 1e-300))
     values, vectors = np.linalg.eigh(squares / np.outer(scale, scale))
     acts = values > _UNKNOWN * values.max(initial=0)
@@ -211,8 +211,9 @@ def _solve(
 ) -> Tuple[np.ndarray, np.ndarray]:
     """Return the step to the estimate, and the covariance of the estimate.
 
-    The estimate minimises the score, weighted by the inverse of its mean variance, and the distance
-    from the start, weighted by the inverse variance of the prior.
+    The estimate minimises a sum of two terms: the squared score, weighted by the inverse of its
+    mean variance, and the squared distance from the start, weighted by the inverse variance of the
+    prior.
     """
     moving, white, score, slope, spread, _ = equations
     weight = np.diag(prior[moving] ** -2)
@@ -243,7 +244,7 @@ def _name_deviations(
 
 
 def _list_blocks(flight: np.ndarray) -> List[np.ndarray]:
-    """Return masks of blocks of consecutive windows, each of one flight."""
+    """Return boolean masks of blocks of consecutive windows; each block belongs to one flight."""
     length = max(_SHORTEST, -(-len(flight) // _BLOCKS))
     blocks = []
     for number in np.unique(flight):

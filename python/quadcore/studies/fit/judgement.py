@@ -1,4 +1,4 @@
-"""Judgement of a model by its predictions of flights that it was not fitted to."""
+"""Judgement of a model by its predictions of flights that were not used in the fit."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ from .windows import (
 
 CONSTANT = "constant velocity and rates"
 _CALIBRATED = 0.3
-"""First part of a flight that only gives trims; the rest is judged."""
+"""Fraction of a flight, from its start, that only calibrates the trims. The rest is judged."""
 _MEMORY, _BLOCK = 10.0, 3.0
-"""Time before a block of windows that gives their trims, and the duration of a block, s."""
+"""Time before a block, for the windows that give its trims, and duration of a block, s."""
 _FEWEST = 5
-"""Windows that give trims; all earlier ones if `_MEMORY` contains fewer."""
+"""Minimum number of windows for the trims; if `_MEMORY` contains fewer, all earlier ones count."""
 DECISIVE = 0.25
-"""Horizon at which a model must be better than the baselines, s."""
+"""Horizon at which the model must be better than the baselines, s."""
 _COMPARED = {True: ("position", "attitude"), False: ("rates",)}
 
 
 class Judgement(NamedTuple):
-    """Errors of predictions over the horizon.
+    """Prediction errors over the horizon.
 
     Attributes
     ----------
     errors : dict of str to dict of str to ndarray (instants,)
-        RMS error of each model and baseline, by channel, in the units of `CHANNELS`.
+        RMS error of each model and baseline by channel, in the units of `CHANNELS`.
     windows : Windows
         Judged windows.
     predicted : dict of str to ndarray
-        States that the first model predicts.
+        States predicted by the first model.
     """
 
     errors: Dict[str, Dict[str, np.ndarray]]
@@ -53,7 +53,7 @@ class Judgement(NamedTuple):
     predicted: Dict[str, np.ndarray]
 
     def list_rows(self) -> List[Tuple[str, str, str, List[float]]]:
-        """List model, channel, unit, and the errors at `HORIZONS`."""
+        """List the model, channel, unit, and errors at `HORIZONS`."""
         places = [INSTANTS.index(horizon) for horizon in HORIZONS]
         return [
             (model, channel, CHANNELS[channel], [float(values[i]) for i in places])
@@ -62,7 +62,7 @@ class Judgement(NamedTuple):
         ]
 
     def check(self) -> None:
-        """Raise `FlightError` if the first model is worse than another row at 0.25 s."""
+        """Raise `FlightError` if the first model is worse than any other at 0.25 s."""
         model, *baselines = self.errors
         place = INSTANTS.index(DECISIVE)
         for channel in _COMPARED["position" in self.windows.states]:
@@ -81,16 +81,17 @@ def judge_models(
     models: Mapping[str, Tuple[FittedModel, Mapping[str, float]]],
     flights: Sequence[PreparedFlight],
 ) -> Judgement:
-    """Predict flights with models and with a baseline.
+    """Predict flights with several models and with a baseline.
 
-    Delay, factor of the rotor speeds and constant torque depend on battery and trim, and drift. So
-    each prediction takes them from the 10 s before it. The first 30 % of a flight only serve for
-    this, the rest is judged.
+    Delay, rotor speed factor and constant torque depend on battery and trim, and drift during a
+    flight. Each prediction therefore uses values calibrated on the preceding 10 s. The first 30 %
+    of a flight are used only for calibration, and the rest is judged.
 
     Parameters
     ----------
     models
-        Models with their values of free parameters and inputs, by name. The first is judged.
+        For each name, a model with values of its free parameters and inputs. The first model is
+        judged.
     flights
         Prepared flights.
     """
@@ -110,7 +111,7 @@ def judge_models(
 
 
 def _find_begin(windows: Windows) -> float:
-    """Return the time from which the windows of a flight are judged, s."""
+    """Return the start time of the judged part of a flight, s."""
     start = windows.start
     return float(start[0] + _CALIBRATED * (start[-1] - start[0]))
 
@@ -118,7 +119,7 @@ def _find_begin(windows: Windows) -> float:
 def _predict_blocks(
     fitted: FittedModel, values: Mapping[str, float], windows: Windows
 ) -> Iterator[Dict[str, np.ndarray]]:
-    """Yield the predictions of each block of judged windows of a flight."""
+    """Yield the predictions for each block of judged windows of a flight."""
     ends = windows.start + INSTANTS[-1]
     begin = _find_begin(windows)
     while begin <= windows.start[-1]:
@@ -134,9 +135,9 @@ def _predict_blocks(
 
 
 def make_logs(judgement: Judgement) -> List[Tuple[str, Log]]:
-    """Make the logs of measured and predicted states of the first flight, for an animation.
+    """Make logs of the measured and predicted states of the first flight, for an animation.
 
-    The predicted states of a window end where the next window begins.
+    The predicted states of a window are used until the next window begins.
     """
     windows = judgement.windows
     if "position" not in windows.states:

@@ -1,4 +1,4 @@
-"""Values in the text of a model."""
+"""Writing values into the text of a model."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from ...support.values import Value, format_value
 def write_values(
     model: Model, values: Mapping[str, Value], aliases: Optional[Mapping[str, str]] = None
 ) -> Model:
-    """Write values of tags and links into the text of a model, and read it.
+    """Write values of tags and links into the text of a model, and read the changed model.
 
     Parameters
     ----------
     model
-        Model with the text.
+        Model to change.
     values
         Values by ``PLUGIN.TAG``, ``LINK.mass`` and so on.
     aliases
-        Other names of the tags in the text.
+        Alternative names of the tags in the text.
 
     Raises
     ------
     InputError
-        If a value is invalid for the model.
+        If a value is not valid for the model.
     """
     from xml.sax.saxutils import escape  # imports urllib.request, which is slow
 
@@ -47,7 +47,7 @@ def write_values(
 
 
 def _find_value(text: bytes, keys: Collection[str]) -> Tuple[int, int]:
-    """Find the value of a tag, or the place for a new tag: begin and end in bytes."""
+    """Find the byte range of a tag's value; for a new tag, both ends are its position."""
     plugin = next(iter(keys)).rpartition(".")[0]
     tags = [[key.rpartition(".")[2]] for key in keys]
     parser = expat.ParserCreate()

@@ -1,4 +1,4 @@
-"""Measured and simulated motion of the horizons of a fit, as logs to watch."""
+"""Measured and simulated motion of the horizons of a fit, as logs for an animation."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ MEASURED, FITTED, START = "measured", "fitted model", "initial model"
 
 
 def compute_motion(problem: Problem, tried: Mapping[str, np.ndarray]) -> Dict[str, np.ndarray]:
-    """Simulate all horizons of a problem with the present starts.
+    """Simulate all horizons of a problem from their current initial states.
 
     Parameters
     ----------
     problem
-        Horizons with corrected starts.
+        Horizons with corrected initial states.
     tried
-        Values of the parameters, by the name of the model.
+        Parameter values by name of the model.
 
     Returns
     -------
     dict of str to ndarray (rows, columns)
-        Rows of `MEASURED` and of each model; empty without position and attitude. Quantities that
-        are not compared are the measured ones.
+        Rows of `MEASURED` and of each model; empty without position and attitude. Channels that are
+        not compared contain the measured values.
     """
     horizons = problem.horizons
     if not {"position", "attitude"} <= set(horizons.channels):
@@ -54,7 +54,7 @@ def compute_motion(problem: Problem, tried: Mapping[str, np.ndarray]) -> Dict[st
 
 
 def join_motion(parts: Sequence[Mapping[str, np.ndarray]]) -> List[Tuple[str, Log]]:
-    """Make a log of each name from the rows of several problems, in the order of time."""
+    """Join the rows of several problems into one log per name, sorted by time."""
     logs = []
     for name in parts[0] if parts else ():
         table = np.vstack([part[name] for part in parts if part])
@@ -64,7 +64,7 @@ def join_motion(parts: Sequence[Mapping[str, np.ndarray]]) -> List[Tuple[str, Lo
 
 
 def _turn(orientation: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """Turn by twice the vector part of a unit quaternion, in body axes."""
+    """Rotate by twice the vector part of a unit quaternion, in body axes."""
     from scipy.spatial.transform import Rotation
 
     half = np.clip(change / 2, -1, 1)

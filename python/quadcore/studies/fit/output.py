@@ -33,7 +33,7 @@ from .windows import HORIZONS
 PAGE = "report.html"
 ERRORS = "errors.csv"
 FILES = (ERRORS, DOCUMENT, PAGE)
-"""Files of a folder, in addition to logs, models and plots."""
+"""Files in the folder, in addition to logs, models and plots."""
 
 _PLAYER_NOTE = "Each horizon starts from a measured state, with the fitted start of the horizon."
 _OF_WINDOWS = (
@@ -50,7 +50,7 @@ def write_prediction(
     world: World,
     replays: Sequence[Replay] = (),
 ) -> List[Path]:
-    """Write the errors, the page, and measured and predicted motion if there is a pose.
+    """Write the errors and the page; with a pose, also the measured and predicted motion.
 
     Parameters
     ----------
@@ -63,7 +63,8 @@ def write_prediction(
     model, world
         Model and world of the predictions.
     replays
-        Replays; the first one is animated instead of the predictions.
+        Replays of the recordings. If there are any, the page animates the first one instead of the
+        predictions.
     """
     written, images = _write_errors(folder, judgement)
     values = {**_describe_predictions(judgement, flights), "plots": images}
@@ -89,7 +90,7 @@ def write_prediction(
 
 
 def write_recorded_fit(folder: Path, fit: RecordedFit, world: World) -> List[Path]:
-    """Write the page of a fit to recordings, and the files of its judgement, if there is one."""
+    """Write the page of a fit to recordings, and the files of its judgement if there is one."""
     written: List[Path] = []
     values: Dict[str, Any] = {"predictions": [], "plots": [], "recordings": []}
     logs: List[Tuple[str, Log]] = []
@@ -114,15 +115,15 @@ def write_recorded_fit(folder: Path, fit: RecordedFit, world: World) -> List[Pat
 
 
 def describe_residual(name: str, unit: str, values: Sequence[float]) -> str:
-    """Describe the change of a residual.
+    """Describe how a fit changed a residual.
 
     Parameters
     ----------
     name, unit : str
         Quantity and its unit.
     values : sequence of float
-        RMS residual with the start values, with the fitted values, and of the latter in the
-        held-out parts (NaN without such parts).
+        RMS residual with the start values, with the fitted values, and with the fitted values in
+        the held-out parts (NaN without such parts).
     """
     before, after, held_out = values
     change = "reduces" if after < before else "does not reduce"
@@ -163,7 +164,7 @@ def write_fit(folder: Path, found: Fit, world: World) -> List[Path]:
 def write_rotor_factors(
     folder: Path, verdict: str, rows: Sequence[Mapping[str, str]], model: Model, world: World
 ) -> List[Path]:
-    """Write the page of the factors of damaged rotors; the rows are those of `write_fit`."""
+    """Write the page with the thrust factors of damaged rotors; `rows` are its parameters."""
     return _write_page(
         folder, "fit.html", [], model, world, verdict=verdict, statements=[],
         title=f"Thrust of the rotors of {model.name}", parameters=rows, residuals=[],
@@ -180,7 +181,7 @@ def _write_page(
     world: World,
     **values: Any,
 ) -> List[Path]:
-    """Write logs, model, ``run.json`` and the page with an animation of the logs."""
+    """Write the logs, the model, ``run.json``, and the page with an animation of the logs."""
     from ...report.page import write_page  # jinja2 is slow to import
     from ...report.player import PlayerFlight, make_section
 
@@ -218,7 +219,7 @@ def _write_errors(folder: Path, judgement: Judgement) -> Tuple[List[Path], List[
 def _describe_predictions(
     judgement: Judgement, flights: Sequence[PreparedFlight]
 ) -> Dict[str, Any]:
-    """Describe errors and recordings for the page, quantities before models."""
+    """Describe errors and recordings for the page, sorted by channel, then by model."""
     rows = judgement.list_rows()
     channels = list(dict.fromkeys(channel for _, channel, _, _ in rows))
     best = {
@@ -244,7 +245,7 @@ def _describe_predictions(
 
 
 def _compare_with_baselines(judgement: Judgement) -> str:
-    """Compare the errors of the judged model with the other rows in a sentence."""
+    """Compare the errors of the judged model with those of the other models in one sentence."""
     place = HORIZONS.index(DECISIVE)
     rows = judgement.list_rows()
     channel, unit = rows[0][1:3]

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 def draw(judgement: Judgement) -> Dict[str, Drawing]:
-    """Draw the errors of all models; `Drawing` by name."""
+    """Draw the errors of all models; return a `Drawing` by name."""
     return {"errors": finish(_draw_errors(judgement.errors))}
 
 
 def draw_differences(motion: Sequence[Tuple[str, Log]]) -> Dict[str, Drawing]:
-    """Draw the difference of each model from the measured motion; `Drawing` by name."""
+    """Draw the difference of each model from the measured motion; return a `Drawing` by name."""
     (_, measured), *models = motion
     figure, grid = panels("Difference from the measured motion", 2, height=1.8, above=0.75)
     for number, (name, log) in enumerate(models, start=1):

@@ -1,4 +1,4 @@
-"""Predictions of real flights by a model, on a batch."""
+"""Predictions of real flights with a model on a batch."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .inputs import INPUTS, TICK, demand_speeds, lag_speeds, lead_speeds
 from .windows import INSTANTS, Windows
 
 _TURN = 2.0
-"""Angle of a rotor in a step, rad. Beyond half a turn, a batch steps vehicles one by one."""
+"""Maximum rotor angle per step, rad. Beyond half a turn, a batch steps vehicles one by one."""
 
 _SENSORS = ("odometry", "imu", "gps", "barometer", "magnetometer")
-"""Parts of the file names of plugins without effect on the motion."""
+"""Parts of the file names of sensor plugins, which do not affect the motion."""
 
 DELAY, SPEED = "delay", "speed"
 TORQUES = ("constantTorqueX", "constantTorqueY", "constantTorqueZ")
@@ -27,20 +27,20 @@ _FEW = 1024
 
 
 class Predictor:
-    """A model that predicts the windows of flights.
+    """Model that predicts the windows of flights.
 
     Parameters
     ----------
     fitted
-        Model with fixed values; its simulation gives the rotors.
+        Model with fixed values; its simulation defines the rotors.
     windows
         Windows to predict.
 
     Attributes
     ----------
     trim : list of str
-        Parameters that each flight has by itself: ``delay`` (s), ``speed``, a factor of
-        the rotor speeds that commands demand, and the constant torques (N m) if the model has them.
+        Parameters that differ between flights: ``delay`` (s), ``speed`` (a factor on the rotor
+        speeds that commands demand), and the constant torques (N m) if the model has them.
     """
 
     def __init__(self, fitted: FittedModel, windows: Windows) -> None:
@@ -58,19 +58,19 @@ class Predictor:
     def predict(
         self, values: Sequence[Mapping[str, float]], trims: Sequence[np.ndarray]
     ) -> List[Dict[str, np.ndarray]]:
-        """Predict the states at `INSTANTS` with each set of values.
+        """Predict the states at `INSTANTS` for each set of values.
 
         Parameters
         ----------
         values
-            Values of parameters of the model and of `INPUTS`, for each set.
+            Values of model parameters and of `INPUTS`, for each set.
         trims
-            For each set the values of `trim` of each flight, shape (flights, trims).
+            For each set, the values of `trim` of each flight, shape (flights, trims).
 
         Returns
         -------
         list of dict
-            For each set arrays (n, instants, k); infinite after a failure.
+            For each set, states by name, shape (n, instants, k); infinite if the flight fails.
         """
         windows, sets, n = self.windows, len(values), len(self.windows.start)
         total = sets * n
@@ -163,7 +163,7 @@ class Predictor:
 
 
 def _remove_sensors(model: Model) -> Model:
-    """Remove plugins of sensors, with which a batch would step vehicles one by one."""
+    """Remove sensor plugins, which would make a batch step vehicles one by one."""
     document = model.document
     text = document.text
     for plugin in re.findall(r"<plugin\b.*?(?:</plugin>|/>)", text, flags=re.DOTALL):
@@ -184,7 +184,7 @@ def _find_torques(fitted: FittedModel) -> List[str]:
 
 
 def find_plugin(fitted: FittedModel, tag: str) -> Optional[str]:
-    """Return the name of the first plugin with a tag."""
+    """Return the name of the first plugin with a tag, or None."""
     for plugin in fitted.simulation.plugins:
         if any(parameter.name == tag for parameter in plugin.parameters):
             return plugin.name

@@ -17,46 +17,46 @@ from .alignment import compute_rates, find_lags, find_mount, shift_topics, turn_
 from .cleaning import Removal, clean_recording, list_gaps
 from .smoothing import NODES, fit_locally
 
-_REACH = 0.04  # s, of the polynomials that give a measured state
-_AIRBORNE = 0.12  # m above the lowest position
-_CLIMB = 0.5  # s before and after the time in the air that do not count
+_REACH = 0.04  # s; half-width of the polynomials that give a measured state
+_AIRBORNE = 0.12  # m above the lowest position; higher positions are in the air
+_CLIMB = 0.5  # s; time after take-off and before landing that is not used
 _IDLE = 0.4
 """Fraction of the median command below which a rotor is idle."""
 _SAME = 0.05
-"""Fraction of equal rows from which two recordings are copies."""
+"""Fraction of equal rows above which two recordings are copies."""
 
 
 class PreparedFlight(NamedTuple):
-    """Measured flight after cleaning and alignment.
+    """Recording of a flight after cleaning and alignment.
 
     Attributes
     ----------
     where : str
-        File.
+        Path of the recording.
     position, orientation, rates : Series, optional
-        Cleaned and aligned measurements, or None.
+        Cleaned and aligned measurements; None without any.
     velocity : Series, optional
-        Velocity in the world, from the positions, m/s.
+        Velocity in world axes, derived from the positions, m/s.
     commands, rotors, battery : Series, optional
-        Inputs.
+        Inputs of the recording: motor commands, rotor speeds and battery voltage.
     setpoint, setpoint_yaw : Series, optional
-        Set-points of position (m) and yaw (rad), each valid until the next.
+        Position (m) and yaw (rad) set-points; each is valid until the next one.
     spin : ndarray, optional
         Direction of rotation of each rotor.
     span : tuple of float
-        Time in the air, s.
+        Start and end of the time in the air, s.
     gaps : ndarray (gaps, 2)
-        Times without measurements or with inputs out of range, s.
+        Start and end of intervals without measurements or with invalid inputs, s.
     lags : dict of str to float
-        Lags that were removed, s.
+        Lag of each topic that was corrected, s.
     tilt : float
-        Angle by which the pose was turned to the axes of the IMU, deg.
+        Angle by which the pose was rotated to the axes of the IMU, deg.
     removals : list of Removal
-        Samples that were left out.
+        Samples that were removed.
     rows : set of bytes
-        Digest of each row, to recognise copies.
+        Digest of each row, to detect copies.
     are_rates_derived : bool
-        Whether the rates follow from the orientation.
+        Whether the rates are derived from the orientation.
     """
 
     where: str
@@ -85,7 +85,7 @@ class PreparedFlight(NamedTuple):
 
 
 def read_flight(path: Union[str, Path], mapping: Optional[str] = None) -> Recording:
-    """Read a recording, or a log of quadcore as measurements of pose, rates and rotor speeds."""
+    """Read a recording, or a log of quadcore as if it were a recording."""
     if mapping is not None or is_recording(Path(path)):
         return read_recording(Path(path), mapping)
     log = Log.of_file(path)
@@ -106,7 +106,8 @@ def prepare_flight(path: Union[str, Path], mapping: Optional[str] = None) -> Pre
     Raises
     ------
     InputError
-        If rates, or both commands and rotor speeds, are missing.
+        If the recording contains neither rates nor an orientation, or neither commands nor rotor
+        speeds.
     """
     recording = read_flight(path, mapping)
     rows = _digest(recording)
@@ -151,7 +152,7 @@ def prepare_flight(path: Union[str, Path], mapping: Optional[str] = None) -> Pre
 
 
 def check_copies(fitted: List[PreparedFlight], judged: List[PreparedFlight]) -> None:
-    """Raise `InputError` if a flight to judge on is a copy of a fitted one."""
+    """Raise `InputError` if a judged flight is a copy of a fitted flight."""
     for one in fitted:
         for other in judged:
             same = len(one.rows & other.rows) / max(1, min(len(one.rows), len(other.rows)))
@@ -163,7 +164,7 @@ def check_copies(fitted: List[PreparedFlight], judged: List[PreparedFlight]) -> 
 
 
 def _digest(recording: Recording) -> set:
-    """Digest rows without their times, which may differ in a copy."""
+    """Return a digest of each row without its time, because a copy may have other times."""
     rows = set()
     for name in ("position", "rates", "acceleration"):
         if name in recording.quantities:
@@ -174,7 +175,7 @@ def _digest(recording: Recording) -> set:
 
 
 def find_span(recording: Recording) -> Tuple[float, float]:
-    """Find the time in the air: rotors turn, and the height, if known, is not the lowest.
+    """Find the time in the air: the rotors turn, and the height (if known) is above the ground.
 
     Raises
     ------
@@ -216,9 +217,9 @@ def _join_gaps(recording: Recording, has_pose: bool) -> np.ndarray:
 
 
 def split_samples(flight: PreparedFlight, half: int) -> PreparedFlight:
-    """Keep every second measured sample: the even (0) or the odd (1) ones.
+    """Keep every 2nd measured sample: the even (0) or the odd (1) samples.
 
-    The noise of one half is independent of that of the other. Commands are not measured.
+    The noise of both halves is independent. Commands are not measured, so all are kept.
     """
 
     def keep(series: Optional[Series]) -> Optional[Series]:
@@ -238,7 +239,7 @@ def split_samples(flight: PreparedFlight, half: int) -> PreparedFlight:
 
 
 def smooth_rotors(flight: PreparedFlight) -> PreparedFlight:
-    """Smooth measured rotor speeds."""
+    """Smooth the measured rotor speeds."""
     if flight.rotors is None:
         return flight
     time, values = flight.rotors
@@ -248,21 +249,21 @@ def smooth_rotors(flight: PreparedFlight) -> PreparedFlight:
 def sample_state(
     flight: PreparedFlight, at: np.ndarray, nodes: int = NODES
 ) -> Dict[str, np.ndarray]:
-    """Return measured states at some times, by local polynomials.
+    """Return the measured states at some times, from local polynomials.
 
     Parameters
     ----------
     flight
-        Flight.
+        Prepared flight.
     at
         Times, s.
     nodes
-        Minimum number of samples on each side of a polynomial.
+        Minimum number of samples on each side of each time.
 
     Returns
     -------
     dict
-        ``rates``, and with a pose ``position``, ``orientation`` and ``velocity``.
+        ``rates``; with a pose also ``position``, ``orientation`` and ``velocity``.
     """
     rates, _ = fit_locally(flight.rates.time, flight.rates.values, at, 0.5 * _REACH, nodes)
     state = {"rates": rates}

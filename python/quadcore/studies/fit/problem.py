@@ -13,15 +13,15 @@ from ...support.parameters import suggest
 from .fitted_model import FittedModel
 from .horizons import Horizons
 
-_STEP = 1e-4  # relative step of a parameter for its derivative
+_STEP = 1e-4  # relative step of a parameter for derivatives
 _START_STEPS = (1e-5, 1e-5, 1e-5, 1e-4, 1e-2)
-"""Steps of a start: position (m), turn (rad), velocity (m/s), rates and rotors (rad/s)."""
+"""Steps of an initial state: position (m), rotation (rad), velocity (m/s), rates (rad/s)."""
 
 _FINEST = {"position": 1e-6, "attitude": 1e-6, "velocity": 1e-6, "rates": 1e-6, "rotors": 1e-4}
-"""Minimum noise of each channel in m, rad, s: derivatives are finite differences."""
+"""Minimum noise of each channel (m, rad, s), because derivatives are finite differences."""
 
 _CENTRE = 1e-2
-"""Minimum typical size of a coordinate of the centre of mass, m."""
+"""Minimum typical magnitude of a coordinate of the centre of mass, m."""
 
 _FAR = 1e6
 """Residual of a failed flight."""
@@ -35,9 +35,9 @@ class Parameter:
     Parameters
     ----------
     name
-        ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx`` or the like, ``xacro.ARG``.
+        ``PLUGIN.TAG``, a value of a link such as ``LINK.mass`` or ``LINK.ixx``, or ``xacro.ARG``.
     fitted
-        Model with the start value.
+        Model that contains the start value.
     bounds
         Minimum and maximum value.
 
@@ -83,7 +83,7 @@ class Parameter:
 
 
 def check_free_names(free: Sequence[str]) -> List[str]:
-    """Return the names of free parameters; raises `InputError` for invalid ones."""
+    """Return the names of the free parameters; raise `InputError` if they are invalid."""
     names = [str(name) for name in arguments.to_list(free)]
     for name in names:
         if names.count(name) > 1:
@@ -96,7 +96,7 @@ def check_free_names(free: Sequence[str]) -> List[str]:
 def make_parameter(
     name: str, fitted: FittedModel, bounds: Optional[Tuple[float, float]]
 ) -> Parameter:
-    """Make a parameter; without bounds, a non-negative one stays non-negative."""
+    """Make a parameter; by default, a non-negative parameter stays non-negative."""
     if bounds is not None:
         return Parameter(name, fitted, bounds)
     made = Parameter(name, fitted)
@@ -106,11 +106,11 @@ def make_parameter(
 
 
 class Problem:
-    """Horizons and their free parameters.
+    """Residuals of horizons as a function of their free parameters.
 
-    The starts of the horizons are also free. Variable projection (Golub and Pereyra, SIAM J. Numer.
-    Anal. 10, 1973) eliminates them: the part of the residuals that other starts would remove is
-    projected out.
+    The initial states of the horizons are also free. Variable projection (Golub and Pereyra, SIAM
+    J. Numer. Anal. 10, 1973) eliminates them: it projects out the part of the residuals that a
+    change of the initial states can remove.
     """
 
     def __init__(self, horizons: Horizons, parameters: Sequence[Parameter]) -> None:
@@ -119,13 +119,13 @@ class Problem:
         sizes = (3, 3, 3, 3, horizons.corrections - 12)
         self._start_steps = np.repeat(_START_STEPS, sizes)
         self.noise = np.ones(len(horizons.channels))
-        """Estimated standard deviation of each channel."""
+        """Estimated standard deviation of the noise of each channel."""
         self._of_each = horizons.list_channels()
         self._along = np.zeros((horizons.count, horizons.width, 0))
         self._by_starts = np.zeros((horizons.count, horizons.width, horizons.corrections))
 
     def linearise_starts(self, values: np.ndarray) -> None:
-        """Compute the effect of the starts near these parameters, and eliminate them from now on.
+        """Linearise the effect of the initial states at these values; later residuals exclude it.
 
         Raises
         ------
@@ -155,7 +155,7 @@ class Problem:
         return weights
 
     def compute_residuals(self, values: np.ndarray) -> np.ndarray:
-        """Return the residuals after the elimination of the starts, weighted by the noise.
+        """Return the residuals without the effect of the initial states, weighted by the noise.
 
         Returns
         -------
@@ -176,7 +176,7 @@ class Problem:
         return np.stack([self._project(change).ravel() for change in changes], axis=1)
 
     def correct_starts(self, values: np.ndarray) -> None:
-        """Move the starts to minimise the residuals."""
+        """Change the initial states to minimise the residuals."""
         flown = self.compare(values)
         for i, (by_start, left) in enumerate(zip(self._by_starts, flown)):
             weighted = by_start / self._weights[:, None]
@@ -202,7 +202,7 @@ class Problem:
             self._update_basis()
 
     def compute_rms(self, values: np.ndarray) -> Dict[str, float]:
-        """Return the RMS residual of each channel in its unit."""
+        """Return the RMS residual of each channel, in the unit of the channel."""
         left = self.compute_residuals(values).reshape(self.horizons.count, -1) * self._weights
         return {
             name: float(np.sqrt(np.mean(left[:, self._of_each == i] ** 2)))
@@ -220,5 +220,5 @@ class Problem:
 
 
 def list_bounds(parameters: Sequence[Parameter]) -> Tuple[List[float], List[float]]:
-    """Return lower and upper bounds."""
+    """Return the lower and the upper bounds."""
     return [p.bounds[0] for p in parameters], [p.bounds[1] for p in parameters]

@@ -13,7 +13,7 @@ from ...simulation.log import Log
 from ...support import arguments
 
 CHANNELS: Dict[str, int] = {"position": 3, "attitude": 3, "velocity": 3, "rates": 3, "rotors": 0}
-"""Channels with their number of values; `rotors` has one per rotor."""
+"""Channels with their number of values; `rotors` has one value per rotor."""
 
 UNITS = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s", "rotors": "rad/s"}
 
@@ -28,13 +28,13 @@ class Record(NamedTuple):
     time : ndarray (rows,)
         Time, s.
     position, velocity, rates : ndarray (rows, 3)
-        As in `Log`, m, m/s, rad/s.
+        As in `Log`: m in world axes, m/s, and rad/s in body axes.
     orientation : ndarray (rows, 4)
         Unit quaternions x, y, z, w.
     rotors : ndarray (rows, n)
-        Joint velocities, rad/s.
+        Velocities of the rotor joints, rad/s.
     commands : ndarray (m, 1 + n), optional
-        Columns t, w1..wn; each row is valid until the next. None: unknown.
+        Columns t (s), w1..wn (rad/s); each row is valid until the next one. None if unknown.
     """
 
     time: np.ndarray
@@ -52,24 +52,24 @@ def read_record(
     commands: Union[np.ndarray, str, Path, None] = None,
     sensed: Optional[str] = None,
 ) -> Record:
-    """Read a flight.
+    """Read the record of a flight.
 
     Parameters
     ----------
     log
-        A log or its file.
+        Log or log file.
     rotors
-        Number of rotors.
+        Number of rotors of the model.
     commands
-        Table or file (default: topic ``vel_cmd`` of the log, if any).
+        Command table or file (default: topic ``vel_cmd`` of the log, if it exists).
     sensed
         Topic with measured pose and velocities, such as ``odom`` (default: the state).
 
     Raises
     ------
     InputError
-        If the log has fewer than two rows or another number of rotors, the topic does not exist, or
-        the commands are invalid.
+        If the log has fewer than two rows or a different number of rotors, the topic does not
+        exist, or the commands are invalid.
     """
     where = "log" if isinstance(log, Log) else str(log)
     flown = log if isinstance(log, Log) else Log.of_file(log)
@@ -101,7 +101,7 @@ def read_record(
 
 
 def choose_channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
-    """Return the channels to compare; raises `InputError` for unknown ones."""
+    """Return the channels to compare; raise `InputError` for unknown names."""
     if given is None:
         return ["position", "attitude", "rates"] + ["rotors"] * (flown.commands is not None)
     given = arguments.to_list(given)
@@ -129,7 +129,7 @@ def _read_sensed_state(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ..
 
 
 def _read_commands(log: Log) -> Optional[np.ndarray]:
-    """Return each command once with its time; None without commands."""
+    """Return each command once, with its time; None without commands."""
     fields = log.topics[_COMMANDS]
     table = np.column_stack(
         [fields["stamp"], *(fields[name] for name in fields if name != "stamp")]

@@ -1,4 +1,4 @@
-"""Fit and prediction of recordings of real flights."""
+"""Fits to recordings of real flights, and predictions of recordings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _TAGS = (
     "pitchDampingCoeff",
     "yawDampingCoeff",
 )
-"""Tags that are free by default, if the model has them and the recordings show the motion."""
+"""Tags that are free by default if the model contains them and the recordings have a pose."""
 
 _OF_RATES = ("kp", "rotorTorqueCoeff", "rollDampingCoeff", "pitchDampingCoeff", "yawDampingCoeff")
 _MOMENTS = ("ixx", "iyy", "izz")
@@ -58,7 +58,7 @@ _MANOEUVRES = {
     "battery": "a flight from a full to an empty battery",
     "speed": "hover",
 }
-"""Manoeuvre or measurement that identifies a parameter, by the last part of its name."""
+"""Manoeuvre or measurement that identifies a parameter, by the last part of the name."""
 
 
 class RecordedFit(NamedTuple):
@@ -67,13 +67,13 @@ class RecordedFit(NamedTuple):
     Attributes
     ----------
     found : FlightFit
-        Values and deviations.
+        Fitted values and standard deviations.
     model : Model
         Fitted model.
     flights, judged : list of PreparedFlight
-        Fitted and judged flights.
+        Flights of the fit, and flights of the judgement.
     judgement : Judgement, optional
-        Errors on the judged flights.
+        Errors on the judged flights; None without such flights.
     """
 
     found: FlightFit
@@ -83,7 +83,7 @@ class RecordedFit(NamedTuple):
     judgement: Optional[Judgement]
 
     def describe(self) -> List[str]:
-        """Describe the parameters that the flights do not identify, a line for each."""
+        """Describe the parameters that the flights do not identify, one per line."""
         lines = []
         for name, deviation in self.found.deviations.items():
             if not math.isnan(deviation):
@@ -114,25 +114,25 @@ def fit_recordings(
     model, xacro_args, ignore, world
         As for `fit`.
     parameters
-        As for `fit`. Names of `INPUTS` are fixed at the given values, unless they are free.
+        As for `fit`. Names in `INPUTS` are fixed at the given values unless they are free.
     logs
         Recordings to fit.
     judge
-        Recordings to judge the fitted and the initial model on.
+        Recordings on which the fitted and the initial model are judged.
     free
-        Names of free parameters; ``inputs`` are those of `INPUTS`. The delay is free in any case,
-        unless `parameters` give it. Default: `list_default_names`.
+        Names of the free parameters; ``inputs`` stands for all of `INPUTS`. The delay is free
+        unless `parameters` defines it. Default: the names of `list_default_names`.
     mapping
-        Mapping of the recordings, see `read_recording`.
+        Mapping of the recordings; see `read_recording`.
     bounds
-        Minimum and maximum value of parameters by name.
+        Minimum and maximum value by parameter name.
     progress
-        Called as progress(done, total).
+        Function called as progress(done, total).
 
     Raises
     ------
     InputError
-        If an argument or a recording is wrong, or a judged recording is a copy of a fitted one.
+        If an argument or a recording is invalid, or a judged recording is a copy of a fitted one.
     FlightError
         If predictions fail.
     """
@@ -185,10 +185,10 @@ def predict_recordings(
     Parameters
     ----------
     inputs
-        Values of `INPUTS` (default: from the balance of thrust and weight), if `parameters` do not
-        give them.
+        Values of `INPUTS` that `parameters` does not define (default: from the balance of thrust
+        and weight).
     controller
-        Controller that follows the recorded set-points in closed loop (default: no replay).
+        Controller for a closed-loop replay of the recorded set-points (default: no replay).
     model, logs, mapping, parameters, xacro_args, ignore, world
         As for `fit_recordings`.
     """
@@ -205,8 +205,8 @@ def predict_recordings(
 def list_default_names(fitted: FittedModel, flights: Sequence[PreparedFlight]) -> List[str]:
     """List the parameters that are free by default.
 
-    These are inertia, motor lag, reaction torque, drag, hub moment and damping, as far as the model
-    has them. Without a pose, they are those that act on the rates.
+    These are inertia, motor lag, reaction torque, drag, hub moment and damping, if the model
+    contains them. Without a pose, only parameters that act on the rates are free.
     """
     has_pose = all(flight.has_pose for flight in flights)
     names = []

@@ -1,4 +1,4 @@
-"""Replay of the set-points of a recording in closed loop."""
+"""Closed-loop replay of the set-points of a recording."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from ...simulation.simulation import Simulation
 from .fitted_model import FittedModel
 from .prepared import PreparedFlight, sample_state
 
-_LOG_STEP = 0.01  # s
+_LOG_STEP = 0.01  # s; time between logged rows
 _DELAYS = np.arange(0.0, 1.0, 0.01)
-"""Delays of the set-points that are compared, s."""
+"""Delays of the set-points that are tried, s."""
 
 
 class Replay(NamedTuple):
-    """Flight along the set-points of a recording, next to the real flight.
+    """Simulated flight along the set-points of a recording, and the real flight.
 
     Attributes
     ----------
     where : str
-        File of the recording.
+        Path of the recording.
     controller : str
-        Controller as text.
+        Name of the controller.
     measured, flown : Log
-        Real and simulated flight over the same times, s since the start.
+        Real and simulated flight at the same times, which start at 0 s.
     setpoints : ndarray (rows, 3)
-        Set-points at these times, m.
+        Position set-points at these times, m.
     delay : float
-        Delay at which the delayed set-points are closest to the real flight, s.
+        Delay that brings the set-points closest to the real flight, s.
     distances : dict of str to tuple of float
-        RMS and maximum distance to the real flight, m: of the replay, the set-points and the
+        RMS and maximum distance from the real flight, m, for the replay, the set-points and the
         delayed set-points.
     mean_command : float, optional
         Mean motor command of the real flight, from 0 to 1.
@@ -50,7 +50,7 @@ class Replay(NamedTuple):
     mean_command: Optional[float]
 
     def list_rows(self) -> List[Tuple[str, Tuple[float, float]]]:
-        """List a title, and RMS and maximum distance, for tables."""
+        """List a title with the RMS and maximum distance (m), for tables."""
         titles = {
             "replay": f"replay with {self.controller}",
             "delayed set-points": f"set-points delayed by {self.delay:.2f} s",
@@ -61,8 +61,8 @@ class Replay(NamedTuple):
 def replay_flight(fitted: FittedModel, flight: PreparedFlight, controller: str) -> Replay:
     """Simulate a flight with a controller that follows the recorded set-points.
 
-    The simulation starts in the measured state, with the rotors at hover speed. Each set-point
-    holds until the next.
+    The simulation starts from the measured state, with the rotors at hover speed. Each set-point
+    holds until the next one.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def replay_flight(fitted: FittedModel, flight: PreparedFlight, controller: str) 
     flight
         Prepared flight.
     controller
-        Controller as `controllers.parse` reads it.
+        Name of the controller, as for `controllers.parse`.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def replay_flight(fitted: FittedModel, flight: PreparedFlight, controller: str) 
 
 
 def _find_setpoint(flight: PreparedFlight, time: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Return the set-points of position (n, 3) and yaw (n,) that are valid at times."""
+    """Return the position (n, 3) and yaw (n,) set-points that are valid at some times (s)."""
 
     def hold(series: Any) -> np.ndarray:
         row = np.searchsorted(series.time, time + 1e-9, "right") - 1

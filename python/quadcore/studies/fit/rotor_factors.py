@@ -1,4 +1,4 @@
-"""Thrust of each rotor of a damaged vehicle, relative to the same vehicle undamaged."""
+"""Thrust of each rotor of a damaged vehicle, relative to the undamaged vehicle."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from ...formats.recordings import Recording
 from .cleaning import clean_recording
 from .prepared import find_span
 
-_BLOCK = 0.5  # s; commands within depend on each other
+_BLOCK = 0.5  # s; commands within a block are correlated
 _DRAWS = 500
-_CERTAIN = 3.0  # standard deviations
+_CERTAIN = 3.0  # standard deviations of a significant loss
 
 
 class RotorFactors(NamedTuple):
-    """Factors of thrust and torque.
+    """Thrust and torque factors of the rotors.
 
     Attributes
     ----------
     factors, deviations : ndarray (rotors,)
-        Factor of each rotor, with the median 1, and its standard deviation.
+        Factor of each rotor, scaled to a median of 1, and its standard deviation.
     """
 
     factors: np.ndarray
@@ -30,7 +30,7 @@ class RotorFactors(NamedTuple):
 
     @property
     def damaged(self) -> Optional[int]:
-        """Index of the rotor with a certain loss, or None."""
+        """Index of the rotor with a significant loss, or None."""
         worst = int(np.argmin(self.factors))
         loss = 1 - self.factors[worst]
         return worst if loss > _CERTAIN * self.deviations[worst] else None
@@ -41,15 +41,15 @@ def find_rotor_factors(
 ) -> RotorFactors:
     """Compare the mean squared commands of damaged and sound flights.
 
-    In the mean of a flight, the thrusts f_i k u_i^2 balance weight and torques, as they do with
-    sound rotors. So the factor f_i is the ratio of the mean squared commands, sound over damaged,
-    up to a common factor of the battery, which the median removes. Deviations come from a bootstrap
-    over blocks of 0.5 s.
+    On average over a flight, the thrusts f_i k u_i^2 balance the weight and the torques, as they do
+    with sound rotors. Therefore the factor f_i is the ratio of the mean squared commands, sound to
+    damaged. The battery adds a common factor, which division by the median removes. The deviations
+    come from a bootstrap over blocks of 0.5 s.
 
     Raises
     ------
     InputError
-        If a flight has no commands, or the numbers of rotors differ.
+        If a flight has no commands, or the number of rotors differs between flights.
     """
     blocks = [[_list_blocks(recording) for recording in group] for group in (sound, damaged)]
     widths = {block.shape[1] for group in blocks for block in group}
@@ -66,7 +66,7 @@ def find_rotor_factors(
         )
         for _ in range(_DRAWS)
     ]
-    # Flights of the same vehicle differ by trim and battery.
+    # Flights of the same vehicle differ in trim and battery.
     between = [
         _compute_factors([[np.mean(one, axis=0)], [np.mean(other, axis=0)]])
         for group in blocks

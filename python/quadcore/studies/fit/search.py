@@ -1,4 +1,4 @@
-"""Search for the parameters with minimum residuals."""
+"""Search for the parameters that minimise the residuals."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from .problem import Problem, list_bounds
 
 _ROUNDS = 12
-"""Maximum number of rounds. Each fits the parameters, then corrects starts and noise."""
+"""Maximum number of rounds. Each round fits the parameters, then updates starts and noise."""
 
-_TRIALS, _LATER = 12, 3  # evaluations in the first round and in later ones
+_TRIALS, _LATER = 12, 3  # maximum number of evaluations in the first and in later rounds
 
 _STILL = 0.03
-"""Change relative to the uncertainty at which the search ends."""
+"""Change relative to the standard deviation below which the search ends."""
 
 Progress = Callable[[int, int], None]
 
@@ -22,7 +22,7 @@ Progress = Callable[[int, int], None]
 def search(
     problem: Problem, rounds: int = _ROUNDS, progress: Optional[Progress] = None
 ) -> np.ndarray:
-    """Find the parameters; also updates starts and noise of the problem.
+    """Find the parameters that minimise the residuals, and update starts and noise of `problem`.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def search(
     Raises
     ------
     KeyboardInterrupt
-        With the attribute `values`, the result of the last round.
+        On Ctrl-C. The attribute `values` is the result of the last round.
     """
     values = np.array([p.start for p in problem.parameters])
     try:
@@ -53,10 +53,10 @@ def search(
 
 
 def _run_round(problem: Problem, values: np.ndarray, done: int) -> Tuple[np.ndarray, bool]:
-    """Run a round; returns the values and whether they have converged."""
+    """Run a round; return the values and whether they have converged."""
     from scipy.optimize import least_squares
 
-    if done:  # the first round uses the measured starts
+    if done:  # the first round uses the measured initial states
         problem.linearise_starts(values)
     else:
         problem.learn_noise(values)

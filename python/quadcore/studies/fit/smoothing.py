@@ -7,24 +7,24 @@ from typing import Tuple
 import numpy as np
 
 NODES = 4
-"""Samples on each side of a polynomial."""
+"""Minimum number of samples on each side of a polynomial."""
 
 
 def fit_locally(
     time: np.ndarray, values: np.ndarray, at: np.ndarray, reach: float, nodes: int = NODES
 ) -> Tuple[np.ndarray, np.ndarray]:
-    """Fit a cubic polynomial around each time, and return its value and derivative there.
+    """Fit a cubic polynomial around each time, and return its value and derivative at that time.
 
     Parameters
     ----------
     time : ndarray (rows,)
-        Times of the samples, s, increasing.
+        Times of the samples in ascending order, s.
     values : ndarray (rows, k)
         Samples.
     at : ndarray (m,)
         Times of the result, s.
     reach : float
-        Samples up to this distance count, s.
+        Maximum distance of the samples from each time, s.
     nodes : int
         Minimum number of samples on each side.
 
@@ -48,7 +48,7 @@ def fit_locally(
 def estimate_noise(values: np.ndarray) -> np.ndarray:
     """Estimate the standard deviation of white noise from third differences, shape (k,).
 
-    The median makes the estimate robust; the factor is that of a normal distribution.
+    The median makes the estimate robust; the scale factor assumes a normal distribution.
     """
     if len(values) < 5:
         return np.zeros(values.shape[1])

@@ -1,4 +1,4 @@
-"""Search for parameters by the errors of predictions over windows of flights."""
+"""Search for parameters by the prediction errors over windows of flights."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from .inputs import DELAY, INPUT_BOUNDS
 from .predictor import Predictor
 from .windows import Windows, compute_errors, predict_constant
 
-_STEP = 1e-4  # of a coordinate, for derivatives
+_STEP = 1e-4  # step of a coordinate for derivatives
 _ROUNDS = 25
 _PRIOR, _TORQUE_PRIOR = 3.0, 1e3
-"""Standard deviations of weak priors: coordinates have sizes near 1; 10 rad/s^2 for torques."""
+"""Standard deviations of weak priors: scaled coordinates, and torques (10 rad/s^2)."""
 FAR = 30.0
 """Weighted error of a prediction that failed."""
-_DELAY_SIZE = 0.01  # s
+_DELAY_SIZE = 0.01  # s; scale of the delay
 Progress = Callable[[int, int], None]
 
 
 class Search:
-    """Weighted errors of predictions over coordinates and trims.
+    """Weighted prediction errors as a function of coordinates and trims.
 
     Parameters
     ----------
     predictor
         Model and windows.
     coordinates
-        Free parameters.
+        Coordinates of the free parameters.
     fixed
-        Values of other parameters.
+        Values of the other parameters.
     weights
-        Weights of the errors (default: the inverse RMS errors of constant velocity and rates).
+        Weight of each error (default: the inverse RMS error of constant velocity and rates).
     """
 
     def __init__(
@@ -55,17 +55,17 @@ class Search:
         self._weights = weights
 
     def replace_windows(self, windows: Windows) -> Search:
-        """Return a search with other windows of the same flights."""
+        """Return a search with different windows of the same flights."""
         predictor = Predictor(self.predictor.fitted, windows)
         return Search(predictor, self.coordinates, self._fixed, self._weights)
 
     @property
     def parameters(self) -> int:
-        """Number of shared parameters."""
+        """Number of parameters that all flights share."""
         return len(self.coordinates.names)
 
     def split(self, x: np.ndarray) -> Any:
-        """Return the coordinates and the trims of a point."""
+        """Split a point into the coordinates and the trims of the flights."""
         trims = x[self.parameters :].reshape(self._flights, -1) * self.trim_sizes
         return x[: self.parameters], trims
 
@@ -91,7 +91,7 @@ class Search:
         return self.weigh(predicted)
 
     def linearise(self, x: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-        """Return the errors and their derivative, shape (windows, errors, coordinates)."""
+        """Return the errors, and their derivative with shape (windows, errors, coordinates)."""
         shared, trims = self.split(x)
         values, sets = [self._name(shared)], [trims]
         for k in range(self.parameters):
@@ -115,7 +115,7 @@ class Search:
     def find(
         self, x: np.ndarray, free: np.ndarray, progress: Optional[Progress] = None
     ) -> np.ndarray:
-        """Minimise the errors over some of the coordinates."""
+        """Minimise the errors over the free coordinates."""
         from scipy.optimize import least_squares
 
         done = 0
@@ -155,7 +155,7 @@ class Search:
         return place(result.x)
 
     def find_prior(self, size: int) -> np.ndarray:
-        """Return the standard deviation of the prior of each coordinate around its start."""
+        """Return the standard deviation of the prior of each coordinate around its start value."""
         of_trim = [_PRIOR, _PRIOR, *[_TORQUE_PRIOR] * (len(self.trim_sizes) - 2)]
         prior = np.tile(of_trim, self._flights)
         shared = np.full(self.parameters, _PRIOR)
@@ -164,7 +164,7 @@ class Search:
         return np.concatenate([shared, prior])
 
     def find_bounds(self, size: int) -> Any:
-        """Return lower and upper bounds of the coordinates."""
+        """Return the lower and the upper bounds of the coordinates."""
         low, high = np.full(size, -np.inf), np.full(size, np.inf)
         low[: self.parameters] = self.coordinates.low
         high[: self.parameters] = self.coordinates.high

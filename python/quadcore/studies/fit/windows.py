@@ -1,4 +1,4 @@
-"""Windows of real flights: measured states at their starts and at instants after them."""
+"""Windows of real flights: measured states at the start and at later instants."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from .prepared import PreparedFlight, sample_state
 from .smoothing import NODES
 
 INSTANTS = (0.05, 0.1, 0.15, 0.25, 0.35, 0.5)
-"""Times after the start at which predictions are compared, s."""
+"""Times after the start of a window at which predictions are compared, s."""
 
 HORIZONS = (0.05, 0.1, 0.25, 0.5)
-"""Horizons of tables, s; some of `INSTANTS`."""
+"""Horizons in tables, s; a subset of `INSTANTS`."""
 
 CHANNELS = {"position": "m", "attitude": "deg", "velocity": "m/s", "rates": "rad/s"}
-"""Compared quantities with the units of tables."""
+"""Compared quantities with their units in tables."""
 
-_EVERY = 0.25  # s between starts
-_BEFORE = 0.5  # s of inputs before a start
+_EVERY = 0.25  # s; time between the starts of windows
+_BEFORE = 0.5  # s; time with inputs before the first window
 _FEWEST = 5
 
 
@@ -32,9 +32,9 @@ class Windows(NamedTuple):
     flights : list of PreparedFlight
         Flights.
     flight : ndarray (n,) of int
-        Flight of each window.
+        Index of the flight of each window.
     start : ndarray (n,)
-        Time at which each window begins, s.
+        Start time of each window, s.
     states : dict of str to ndarray (n, instants + 1, k)
         Measured states at the start and at each of `INSTANTS`.
     """
@@ -46,11 +46,11 @@ class Windows(NamedTuple):
 
     @property
     def channels(self) -> List[str]:
-        """Measured quantities."""
+        """Names of the measured quantities."""
         return list(CHANNELS) if "position" in self.states else ["rates"]
 
     def choose(self, kept: np.ndarray) -> Windows:
-        """Return some of the windows."""
+        """Return a subset of the windows."""
         states = {name: values[kept] for name, values in self.states.items()}
         return Windows(self.flights, self.flight[kept], self.start[kept], states)
 
@@ -61,14 +61,14 @@ class Windows(NamedTuple):
 
 
 def make_windows(flights: Sequence[PreparedFlight], nodes: int = NODES) -> Windows:
-    """Make windows that begin at regular times, leaving out those that touch a gap.
+    """Make windows at regular times; windows that touch a gap are omitted.
 
     Parameters
     ----------
     flights
         Prepared flights.
     nodes
-        Minimum number of samples on each side of the polynomials that give measured states.
+        Minimum number of samples on each side of the polynomials that give the measured states.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def make_windows(flights: Sequence[PreparedFlight], nodes: int = NODES) -> Windo
 def compare_states(
     measured: Dict[str, np.ndarray], predicted: Dict[str, np.ndarray]
 ) -> Dict[str, np.ndarray]:
-    """Return predicted minus measured states; the attitude as a rotation vector in body axes, rad.
+    """Return predicted minus measured states, with attitude errors as rotation vectors (body, rad).
 
     Arrays have the shape (..., k).
     """
@@ -115,7 +115,7 @@ def compare_states(
 
 
 def predict_constant(windows: Windows) -> Dict[str, np.ndarray]:
-    """Predict every instant with the velocity and the rates of the start."""
+    """Predict every instant with the velocity and rates of the start."""
     from scipy.spatial.transform import Rotation
 
     after = np.array(INSTANTS)[None, :, None]
@@ -134,12 +134,12 @@ def predict_constant(windows: Windows) -> Dict[str, np.ndarray]:
 
 
 def compute_errors(windows: Windows, predicted: Dict[str, np.ndarray]) -> Dict[str, np.ndarray]:
-    """Return the errors of predictions, shape (n, instants, 3) by channel."""
+    """Return the prediction errors by channel, shape (n, instants, 3)."""
     return compare_states({n: v[:, 1:] for n, v in windows.states.items()}, predicted)
 
 
 def compute_rms(errors: Dict[str, np.ndarray]) -> Dict[str, np.ndarray]:
-    """Return the RMS length of the error at each of `INSTANTS`, in the units of `CHANNELS`."""
+    """Return the RMS norm of the errors at each of `INSTANTS`, in the units of `CHANNELS`."""
     rms = {
         name: np.sqrt(np.mean(np.sum(error**2, axis=2), axis=0)) for name, error in errors.items()
     }

@@ -21,11 +21,11 @@ from .row_spec import Flight, Row, RowSpec
 ENGINE = "eigen"
 """Engine of the batches."""
 
-_SLIP = 1e-9  # s; tolerance of command times, as in a single flight
+_SLIP = 1e-9  # s; tolerance of command times, as in a separate flight
 
 
 def fly_together(specs: Sequence[RowSpec]) -> Optional[List[Row]]:
-    """Simulate rows on one batch, bit-identical to single flights.
+    """Simulate rows on one batch, bit-identical to separate flights.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def fly_together(specs: Sequence[RowSpec]) -> Optional[List[Row]]:
     Returns
     -------
     list of Row, or None
-        Outcomes; None if the rows cannot share a batch.
+        Completed rows; None if the rows cannot share a batch.
     """
     flights = [spec for spec in specs if isinstance(spec, Flight)]
     if len(flights) < max(2, len(specs)):
@@ -47,12 +47,12 @@ def fly_together(specs: Sequence[RowSpec]) -> Optional[List[Row]]:
     try:
         with time_limit(len(flights) * flights[0].limit), suppress_warnings():
             return _fly(flights)
-    except QuadcoreError:  # single flights show which row is invalid
+    except QuadcoreError:  # separate flights show which row is invalid
         return None
 
 
 def _fly_guided(flights: Sequence[Flight]) -> Optional[List[Row]]:
-    """Simulate rows with controllers on one batch, if they can share it."""
+    """Simulate rows with controllers on one batch, if they can share a batch."""
     plans = [partial(getattr, spec, "plan") for spec in flights]
     first = flights[0]
     outcomes = measured_flight.fly_together(plans, first.limit, first.criteria)
@@ -70,7 +70,7 @@ def _fly_guided(flights: Sequence[Flight]) -> Optional[List[Row]]:
 
 
 def _are_alike(plans: Sequence[FlightPlan]) -> bool:
-    """Whether plans differ only in the vehicle, its pose and the seed."""
+    """Whether plans differ only in vehicle, pose and seed."""
     first = plans[0]
     return (
         first.engine == ENGINE
@@ -105,7 +105,7 @@ def _fly(flights: Sequence[Flight]) -> List[Row]:
     logged = range(0, steps + 1, first.log_every)
     tables = np.empty((len(plans), len(logged), batch.log_width))
     state = np.empty((len(plans), batch.state_width))
-    # First step of each row of the commands.
+    # Step at which each row of the commands becomes valid.
     begins = np.ceil((first.commands[:, 0] - _SLIP) / batch.dt).astype(int)
     stops = sorted({*logged, *begins[(begins > 0) & (begins < steps)].tolist()})
     flown = row = 0

@@ -1,4 +1,4 @@
-"""Rows that call a function instead of simulating a flight."""
+"""Rows of a sweep that call a function instead of simulating a flight."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Calls:
     design
         Points of the sweep.
     function
-        Called with a dictionary of the values of a point; returns a number or a mapping.
+        Function called with a dictionary of the values of a point; returns a number or a mapping.
     measures
         Names of the returned values.
     time_limit
@@ -52,26 +52,26 @@ class Calls:
     """Maximum number of rows per task."""
     apart = False
     whole = ()
-    """Columns of whole numbers, in addition to ``row``."""
+    """Integer columns, in addition to ``row``."""
 
     def __len__(self) -> int:
         return len(self.design)
 
     @property
     def names(self) -> List[str]:
-        """Names of the first columns."""
+        """Names of the parameter columns."""
         return self.design.names
 
     def list_cells(self, row: int) -> Dict[str, Any]:
-        """Return the parameter values of a row, by name."""
+        """Return the parameter values of a row by name."""
         return dict(self.design[row])
 
     def make_spec(self, row: int) -> Call:
-        """Describe a row."""
+        """Make the specification of a row."""
         return Call(row, self.list_cells(row), self._function, self.measures, self._limit)
 
     def describe(self) -> Dict[str, Any]:
-        """Return the settings of the sweep."""
+        """Return the settings of the sweep as plain values."""
         return {
             "function": getattr(self._function, "__qualname__", repr(self._function)),
             **self.design.describe(),
@@ -90,9 +90,9 @@ class Call:
     limit: float
 
     def fingerprint(self) -> str:
-        """Return a digest of the name, the text of the module, and the arguments.
+        """Return a digest of the function's name, its module's source, and the arguments.
 
-        Closures, partial functions and callable objects have none: "".
+        Closures, partial functions and callable objects have no digest ("").
         """
         function, text = self.function, b""
         if isinstance(function, FunctionType) and not function.__closure__:
@@ -108,7 +108,7 @@ class Call:
         Raises
         ------
         QuadcoreError
-            If it does not return numbers with the names in `measures`.
+            If the function does not return numbers with the names in `measures`.
         """
         with time_limit(self.limit):
             found = self.function({name: _number(value) for name, value in self.names.items()})

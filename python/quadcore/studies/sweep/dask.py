@@ -8,12 +8,12 @@ from typing import Any, Callable, Iterator, Tuple
 from ..._core import QuadcoreError
 from ...support.optional_packages import require_package
 
-_PATIENCE = 30.0  # s; waiting time for a scheduler
+_PATIENCE = 30.0  # s; time limit of the connection
 
 
 @contextmanager
 def connect_cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
-    """Connect to a scheduler.
+    """Connect to a scheduler during the block.
 
     Parameters
     ----------
@@ -23,12 +23,12 @@ def connect_cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
     Returns
     -------
     tuple
-        Executor, and a function that raises `QuadcoreError` if the connection is lost.
+        Executor, and a function that raises `QuadcoreError` after the connection is lost.
 
     Raises
     ------
     QuadcoreError
-        If no scheduler answers.
+        If no scheduler answers at the address.
     """
     with require_package("--dask", "distributed", "dask"):
         from distributed import Client
@@ -59,7 +59,7 @@ def _connect(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]
 
 @contextmanager
 def _silence_loggers() -> Iterator[None]:
-    """Silence the log messages of the client; a lost scheduler is reported once."""
+    """Silence the log messages of the client; `check` reports a lost scheduler."""
     import logging
 
     known = logging.root.manager.loggerDict

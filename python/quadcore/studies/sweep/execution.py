@@ -41,19 +41,19 @@ if TYPE_CHECKING:
 Take = Callable[[Row], None]
 
 _ATTEMPTS = 3
-"""Attempts for a row after its process was killed, perhaps because memory ran out."""
+"""Number of attempts for a row after its process was killed, possibly because memory ran out."""
 
 _AHEAD = 1024
-"""Pending tasks of a cluster: enough for many workers; each needs 25 kB."""
+"""Maximum number of pending tasks of a cluster; each task needs 25 kB."""
 
 _AHEAD_OF_EACH = 2
-"""Pending tasks per worker of a pool."""
+"""Maximum number of pending tasks per worker of a pool."""
 
 _WORKERS = 16
 """Assumed number of workers of an executor."""
 
 _SHARES = 4
-"""Minimum number of tasks per process, if there are enough rows, to balance the load."""
+"""Minimum number of tasks per process, for a balanced load."""
 
 _PIECE = 2**16  # bytes; capacity of a pipe
 
@@ -68,9 +68,9 @@ def fly_locally(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optio
     plan, rows
         Plan and numbers of the rows.
     take
-        Called with the outcome of each row.
+        Function called with the outcome of each row.
     processes
-        Number of processes; None: one per core.
+        Number of processes. None: one per core.
     """
     for attempt in range(1, 1 + _ATTEMPTS):
         attempt_ = _Attempt(plan, take, attempt)
@@ -81,7 +81,7 @@ def fly_locally(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optio
 
 
 class _Attempt:
-    """One attempt to run rows; some may need another attempt."""
+    """One attempt to run rows; rows of a process that was killed need another attempt."""
 
     def __init__(self, plan: AnyPlan, take: Take, number: int) -> None:
         self.again: List[int] = []
@@ -91,7 +91,7 @@ class _Attempt:
     def fly(self, rows: Iterable[int], processes: Optional[int]) -> None:
         if self._number == 1:
             tasks = _share_out(self._plan, rows, processes or count_cores())
-        else:  # a single process has all the memory
+        else:  # a single process can use all the memory
             tasks, processes = _split(rows, 1), 1
         run_cases(
             self._fly_task,
@@ -134,16 +134,16 @@ def fly_on_executor(
     Parameters
     ----------
     executor
-        Executor; its processes need quadcore.
+        Executor with processes that can import quadcore.
     plan, rows, take
         As for `fly_locally`.
     check
-        Called at intervals; raises if the executor has failed.
+        Function called at intervals; it raises an error if the executor has failed.
 
     Raises
     ------
     QuadcoreError
-        If the executor fails; `take` has received the completed rows.
+        If the executor fails. `take` has then received the completed rows.
     """
     waiting = _share_out(plan, rows, _WORKERS)
     at_most = _AHEAD_OF_EACH * getattr(executor, "_max_workers", _AHEAD // _AHEAD_OF_EACH)
@@ -191,8 +191,8 @@ def fly_on_executor(
 def _shut_down_broken(executor: concurrent.futures.Executor, error: Exception) -> None:
     """Shut down a broken pool without waiting for it.
 
-    Its ``with`` block may never end: a thread may be stuck in a full pipe that no process reads
-    (CPython issue 94777).
+    Its ``with`` block may never end, because a thread may block on a full pipe that no process
+    reads (CPython issue 94777).
     """
     from concurrent.futures import BrokenExecutor
 
@@ -207,15 +207,15 @@ def _shut_down_broken(executor: concurrent.futures.Executor, error: Exception) -
 def _drain(calls: Any) -> None:
     """Read the pipe of a queue to its end, in another thread."""
     try:
-        # A copy: the queue's thread closes its own descriptor.
+        # A copy, because the queue's thread closes its own descriptor.
         pipe = os.dup(calls._reader.fileno())
-    except OSError:  # it is done
+    except OSError:  # the pipe is already closed
         return
     try:
         is_pipe = os.path.samestat(os.fstat(pipe), os.fstat(calls._writer.fileno()))
     except OSError:
         is_pipe = False
-    if not is_pipe:  # closed meanwhile; the number belongs to another file
+    if not is_pipe:  # the pipe was closed, and its number now belongs to another file
         os.close(pipe)
         return
 
@@ -265,7 +265,7 @@ def _get_fingerprint(spec: Union[RowSpec, Row]) -> str:
 
 
 def _make_spec(plan: AnyPlan, number: int) -> Union[RowSpec, Row]:
-    """Return the description of a row, or its failure."""
+    """Return the specification of a row, or its failure."""
     try:
         return plan.make_spec(number)
     except QuadcoreError as error:
@@ -273,7 +273,7 @@ def _make_spec(plan: AnyPlan, number: int) -> Union[RowSpec, Row]:
 
 
 def _share_out(plan: AnyPlan, rows: Iterable[int], processes: int) -> Iterator[Sequence[int]]:
-    """Split rows into tasks of the best size."""
+    """Split rows into tasks of a suitable size."""
     return _split(rows, max(1, min(plan.at_once, len(plan) // (_SHARES * processes))))
 
 
@@ -293,12 +293,12 @@ def _may_be_random(outcome: QuadcoreError) -> bool:
 
 
 def _collect(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Union[Row, int]]:
-    """Return the rows of a task, or their numbers if the worker died."""
+    """Yield the rows of a task; if the worker died, yield the row numbers of a larger task."""
     try:
         yield from future.result()
         return
     except Exception as error:
-        # Dask raises it if the task has killed several workers.
+        # Dask raises this error if the task has killed several workers.
         if type(error).__name__ != "KilledWorker":
             raise
     if len(numbers) > 1:

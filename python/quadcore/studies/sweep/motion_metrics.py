@@ -21,7 +21,7 @@ UNITS = {
     "max_rate": "rad/s",
     "travelled": "m",
 }
-"""Unit of each metric, by name."""
+"""Unit of each metric by name."""
 
 MEANINGS = {
     "final_x": "position of the frame at the end",

@@ -1,4 +1,4 @@
-"""Files of a sweep in addition to its rows: summary, plots, page."""
+"""Files of a sweep in addition to its rows: summary, plots and page."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from .watched_rows import WatchedRow, make_player, watch_rows, write_watched_row
 FILES = (TABLE, "sweep.json", DOCUMENT, "report.html")
 
 WORST = 10
-"""Number of worst rows, and of failed rows, that are listed with their command."""
+"""Number of rows with the highest metric, and of failed rows, listed with their command."""
 
 Columns = Mapping[str, np.ndarray]
 
 
 def choose_metric(plan: AnyPlan, asked: Optional[str] = None) -> str:
-    """Return the metric that is drawn and ranked; raises `InputError` if it does not exist."""
+    """Return the metric to draw and rank; raise `InputError` if it does not exist."""
     if asked is not None and asked not in plan.measures:
         raise InputError(f"metric '{asked}' does not exist. Use one of {', '.join(plan.measures)}.")
     return asked or plan.measures[0]
@@ -51,7 +51,7 @@ def write(
     plots: bool,
     processes: Optional[int] = None,
 ) -> List[Path]:
-    """Write `FILES` except the table, which exists already, and plots.
+    """Write `FILES`, except the table, which already exists, and the plots.
 
     Parameters
     ----------
@@ -60,11 +60,11 @@ def write(
     folder
         Existing folder.
     measure
-        Metric that is drawn and ranked.
+        Metric to draw and rank.
     plots
-        Whether to draw.
+        Whether to draw plots.
     processes
-        Number of processes that draw; None: one per core.
+        Number of processes that draw. None: one per usable core.
     """
     from ...report.page import write_page  # jinja2 is slow to import
 
@@ -111,7 +111,7 @@ def write(
 
 
 def _describe_step_error(watched: Sequence[WatchedRow]) -> str:
-    """Describe the numerical error of the plant in the first of some rows; "" without one."""
+    """Describe the numerical error of the plant in the first of these rows; "" without rows."""
     for row in watched:
         flight = row.flight
         error = compute_step_error(row.name, flight.plan, flight.limit)
@@ -120,7 +120,7 @@ def _describe_step_error(watched: Sequence[WatchedRow]) -> str:
 
 
 def remove_sweep(folder: Path) -> None:
-    """Remove the files of an earlier sweep that was finished; an unfinished one is kept."""
+    """Remove the files of an earlier complete sweep; an incomplete sweep is kept."""
     if not (folder / "sweep.json").exists():
         return
     remove_plots(folder, "sweep.json", sweep_plots.NAMES.__contains__)
@@ -140,7 +140,7 @@ def count_rows(plan: AnyPlan, columns: Columns) -> str:
 
 
 def summarise_rows(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
-    """Return quantiles of each metric for each combination of controller, reference and so on."""
+    """Return quantiles of each metric for each combination (see `list_combinations`)."""
     rows = []
     for names, chosen in list_combinations(columns):
         failed = int((columns["failure"][chosen] != "").sum())
@@ -156,7 +156,7 @@ def summarise_rows(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
 
 
 def list_worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, Any]]:
-    """List failed rows and rows with maximum metric, each with the command to repeat it."""
+    """List failed rows and the rows with the highest metric, with the command to repeat them."""
     values = columns[measure].astype(float)
     failed = np.flatnonzero(columns["failure"] != "")[:WORST]
     order = np.argsort(-np.where(np.isfinite(values), values, -np.inf), kind="stable")
@@ -173,7 +173,7 @@ def list_worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, 
 
 
 def _drop_repeated(rows: Sequence[Dict[str, str]]) -> List[Dict[str, str]]:
-    """Leave out what has the same value in all rows, before the parameter that a row is about."""
+    """Drop the leading columns that have the same value in all rows."""
     if not rows:
         return []
     names = list(rows[0])

@@ -1,9 +1,10 @@
-"""PAWN index: how much the distribution of a result depends on one parameter.
+"""PAWN index: how strongly the distribution of a result depends on one parameter.
 
-The rows are divided into slices by the parameter. The index is the mean Kolmogorov-Smirnov distance
-between the distribution in a slice and that of all rows, weighted by the number of rows. It is 0
-without an effect, at most 1, needs no particular design, and also shows effects that are not
-monotonic (Pianosi and Wagener, Environmental Modelling & Software 108, 2018).
+The rows are divided into slices by the value of the parameter. The index is the mean
+Kolmogorov-Smirnov distance between the distribution in a slice and that of all rows, weighted by
+the number of rows. It ranges from 0 (no effect) to 1. It requires no particular design and also
+detects effects that are not monotonic (Pianosi and Wagener, Environmental Modelling & Software 108,
+2018).
 """
 
 from __future__ import annotations
@@ -13,26 +14,26 @@ from typing import Iterable, NamedTuple
 
 import numpy as np
 
-_SLICES = 10  # at most
-_LEAST = 6  # rows per slice
-_LEVELS = 100  # of the distribution functions, at most
+_SLICES = 10  # maximum number of slices
+_LEAST = 6  # minimum number of rows per slice
+_LEVELS = 100  # maximum number of levels of the distribution functions
 _RESAMPLES = 100
 _QUANTILE = 0.95
-_DEVIATIONS = 1.96  # of a 95 % interval
+_DEVIATIONS = 1.96  # half-width of a 95 % interval in standard deviations
 
 
 class Pawn(NamedTuple):
-    """Index with its uncertainty; NaN without enough rows."""
+    """Index with its uncertainty; NaN if there are too few rows."""
 
     value: float = math.nan
     interval: float = math.nan
-    """Half-width of the 95 % interval, by bootstrap."""
+    """Half-width of the 95 % interval from a bootstrap."""
     noise: float = math.nan
-    """Index that 95 % of parameters without effect do not exceed."""
+    """95 % quantile of the index of a parameter without effect."""
 
 
 def compute_pawn(parameter: np.ndarray, values: np.ndarray) -> Pawn:
-    """Compute the index of a parameter for some values; both have shape (rows,)."""
+    """Compute the index of a parameter for the values of a result; both have shape (rows,)."""
     known = np.isfinite(values)
     count = int(known.sum())
     if count < 2 * _LEAST or np.ptp(values[known]) == 0:
@@ -48,7 +49,7 @@ def compute_pawn(parameter: np.ndarray, values: np.ndarray) -> Pawn:
         tables = [np.bincount(each, minlength=shape[0] * shape[1]) for each in sets]
         return np.array(tables).reshape(-1, *shape)
 
-    draw = np.random.default_rng(0)  # equal rows have equal intervals
+    draw = np.random.default_rng(0)  # the same rows give the same interval
     again = (cells[draw.integers(count, size=count)] for _ in range(_RESAMPLES))
     without = (levels * shape[1] + draw.permutation(slices) for _ in range(_RESAMPLES))
     return Pawn(
@@ -59,7 +60,7 @@ def compute_pawn(parameter: np.ndarray, values: np.ndarray) -> Pawn:
 
 
 def _divide(values: np.ndarray, most: int) -> np.ndarray:
-    """Return a class of each value: its own if there are few values, else one of equal sizes."""
+    """Return the class of each value: one per distinct value, or classes of equal size if many."""
     distinct, own = np.unique(values, return_inverse=True)
     if len(distinct) <= most:
         return np.asarray(own).reshape(-1)
@@ -69,7 +70,7 @@ def _divide(values: np.ndarray, most: int) -> np.ndarray:
 
 
 def _compute_distances(tables: np.ndarray) -> np.ndarray:
-    """Return the index of tables of row counts, shape (..., levels, slices)."""
+    """Return the index for tables of row counts, shape (..., levels, slices)."""
     cumulated = tables.cumsum(axis=-2)
     sizes = cumulated[..., -1, :]
     whole = cumulated.sum(axis=-1, keepdims=True) / sizes.sum(axis=-1)[..., None, None]

@@ -1,4 +1,4 @@
-"""Rows of a sweep, checked before the first one starts."""
+"""Rows of a sweep, checked before the first row starts."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ _TOGETHER = 32  # rows per batch: four times the number of lanes
 class Plan(Cases):
     """Checked combinations of controllers, references, engines, models, points and seeds.
 
-    Commands may replace controllers and references.
+    Commands can replace controllers and references.
 
     Parameters
     ----------
     design
         Points of the sweep.
     controllers, references_
-        As `evaluate` takes them; None with `commands`.
+        As for `evaluate`; None with `commands`.
     engines, models, options, commands
         As for `sweep`.
 
     Raises
     ------
     InputError
-        If an input is invalid. Errors of user-defined controllers only fail their flights.
+        If an input is invalid. An error of a user-defined controller only fails its flights.
     """
 
     def __init__(
@@ -70,16 +70,16 @@ class Plan(Cases):
             self.units, self.meanings = motion_metrics.UNITS, motion_metrics.MEANINGS
         self.measures = list(self.units)
         self.names = list(self.list_cells(0))
-        """Names of the first columns, the conditions."""
+        """Names of the first columns, which contain the conditions."""
         self._commands = str(commands) if isinstance(commands, (str, Path)) else None
         self.check(commands)
 
     whole = ("seed",)
-    """Columns of whole numbers, in addition to ``row``."""
+    """Integer columns, in addition to ``row``."""
 
     @property
     def at_once(self) -> int:
-        """Maximum number of rows per task: several if they can share a batch."""
+        """Maximum number of rows per task; more than one if rows can share a batch."""
         if not self.control.is_closed_loop:
             return _TOGETHER if self.engines == [ENGINE] else 1
         is_grouped = set(self.engines) <= set(ENGINES) and not self.control.runs_user_code
@@ -87,16 +87,16 @@ class Plan(Cases):
 
     @property
     def apart(self) -> bool:
-        """Whether each flight needs a separate process."""
+        """Whether each flight requires a separate process."""
         return self.control.runs_user_code
 
     def list_cells(self, row: int) -> Dict[str, Any]:
-        """Return the conditions of a row, the first columns of the table."""
+        """Return the conditions of a row, which are the first columns of the table."""
         case = self[row]
         return {**self.name_sides(case), **self.design[case.point], "seed": self.seeds[case.seed]}
 
     def make_spec(self, row: int) -> Flight:
-        """Return the description of a row; errors pass through."""
+        """Return the specification of a row; errors propagate."""
         case, own = self[row], None
         plan = self.make_plan_without_controller(case)
         if self.control.is_closed_loop:
@@ -133,7 +133,7 @@ def make_design(
     design: str,
     samples: Optional[int],
 ) -> Tuple[Design, SweepOptions]:
-    """Make the points of a sweep, including the scenarios; arguments as for `sweep`."""
+    """Make the points of a sweep, including the scenarios; the arguments are those of `sweep`."""
     vary, options = make_scenario_axis(vary, options)
     return Design(vary, points, design, samples, check_whole(options.seed)), options
 

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 NAMES = ("measure", "sensitivity", "surface", "parallel")
 
-_COMBINATIONS = 4  # in one figure
+_COMBINATIONS = 4  # maximum number in a figure
 _AXES = 12
 _LINES = 600
-_WIDE = 30  # ratio of maximum to minimum from which colours are logarithmic
+_WIDE = 30  # ratio of maximum to minimum above which the colour scale is logarithmic
 _COLOURS = "viridis"
 
 Columns = Mapping[str, np.ndarray]
@@ -73,12 +73,12 @@ Parts = List[Tuple[str, np.ndarray]]
 
 
 def _make_label(names: Mapping[str, str], among: Sequence[Mapping[str, str]]) -> str:
-    """Label a combination by the names that differ among the combinations."""
+    """Label a combination by the names that differ between combinations."""
     return ", ".join(v for k, v in names.items() if len({other[k] for other in among}) > 1)
 
 
 def _colour_scale(values: np.ndarray) -> Any:
-    """Return a scale of colours, logarithmic for values that span magnitudes."""
+    """Return a colour scale, which is logarithmic if the values span orders of magnitude."""
     from matplotlib.colors import LogNorm, Normalize
 
     low, high = values.min(), values.max()
@@ -89,7 +89,7 @@ def _colour_scale(values: np.ndarray) -> Any:
 def _draw_distribution(
     parts: Parts, rows: Mapping[str, int], values: np.ndarray, label: str, note: str
 ) -> Figure:
-    """Draw cumulative distributions; failed rows count as infinite."""
+    """Draw the cumulative distributions; failed rows count as infinite."""
     title = f"Cumulative distribution of {label}{note}"
     figure, grid = panels(title, 1, height=2.8, above=0.7)
     axes = grid[0, 0]
@@ -151,7 +151,7 @@ def _draw_sensitivity(rows: Sequence[Mapping[str, Any]], measure: str) -> Figure
 
 
 def _leading_axes(rows: Sequence[Mapping[str, Any]]) -> List[str]:
-    """Return the two axes with the strongest effect."""
+    """Return the two axes with the strongest effects."""
     weight: Dict[str, float] = {}
     for row in rows:
         weight[row["axis"]] = max(weight.get(row["axis"], 0.0), measure_effect(row))
@@ -210,7 +210,7 @@ def _terms(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def _fit_quadratic(
     axes: Sequence[np.ndarray], values: np.ndarray, across: np.ndarray
 ) -> Optional[np.ndarray]:
-    """Fit a quadratic over the unit square; None if there are too few rows."""
+    """Fit a quadratic function over the unit square; return None if there are too few rows."""
     terms = _terms(*axes)
     if len(terms) < 3 * terms.shape[1]:
         return None
@@ -234,7 +234,7 @@ def _draw_parallel(
     chosen = np.concatenate([part for _, part in parts])
     ends = {name: (columns[name][chosen].min(), columns[name][chosen].max()) for name in names}
     rows = chosen[pick_evenly(len(chosen), _LINES)]
-    rows = rows[np.argsort(columns[measure][rows])]  # high values on top
+    rows = rows[np.argsort(columns[measure][rows])]  # draw the highest values last
     heights = np.stack([_normalise(columns[name][rows], ends[name]) for name in names], axis=1)
     scale = _colour_scale(columns[measure][chosen])
     heights[:, -1] = scale(columns[measure][rows])

@@ -1,4 +1,4 @@
-"""The command that repeats a row."""
+"""Shell command that repeats a row."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .plan import AnyPlan, Plan
 
 
 def write_command(plan: AnyPlan, row: int) -> Optional[str]:
-    """Write the command that repeats a row; None for controller objects and functions."""
+    """Return the command that repeats a row; None for controller objects and functions."""
     if not isinstance(plan, Plan):
         return None
     case = plan[row]
@@ -64,7 +64,7 @@ def _collect_parameters(common: Mapping[str, str], point: Mapping[str, str]) -> 
 
 
 def _write_controller(plan: Plan, row: int, text: str, point: Mapping[str, str]) -> str:
-    """Write the controller with the values of the point."""
+    """Return the name of the controller with the parameter values of the point."""
     keys = [name[len(OF_CONTROLLER) :] for name in point if name.startswith(OF_CONTROLLER)]
     if not set(keys) - {"rate", "delay"}:
         return text

@@ -1,4 +1,4 @@
-"""The file of a sweep's rows, valid at any time."""
+"""File with the rows of a sweep, which is valid at any time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .row_spec import Row, compute_digest
 
 
 class RowFile:
-    """CSV file with a row per flight, in the order of completion.
+    """CSV file with one row per flight, in the order of completion.
 
     The columns are ``row``, the conditions, ``failure``, the metrics and ``fingerprint``. A
     complete file is sorted.
@@ -30,12 +30,12 @@ class RowFile:
     plan
         Plan of the sweep.
     resume
-        Whether to keep existing rows, which must match the plan.
+        Whether to keep existing rows; they must match the plan.
 
     Raises
     ------
     InputError
-        If there are rows without `resume`, or they are damaged or have other inputs.
+        If rows exist without `resume`, are damaged, or result from different inputs.
     """
 
     def __init__(self, path: Path, plan: AnyPlan, resume: bool) -> None:
@@ -46,7 +46,7 @@ class RowFile:
                 raise InputError(
                     f"the table would have two columns '{name}'. Rename an axis or a metric."
                 )
-        self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each row
+        self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # start and length of each row
         self.whole = ("row", *plan.whole)
         self._head = _write_line(self.columns)
         check_writable(path)
@@ -67,7 +67,7 @@ class RowFile:
 
     @property
     def missing(self) -> Iterator[int]:
-        """Missing rows."""
+        """Numbers of the missing rows."""
         return (int(row) for row in np.flatnonzero(self._where[:, 0] < 0))
 
     @property
@@ -76,14 +76,14 @@ class RowFile:
         return int((self._where[:, 0] >= 0).sum())
 
     def take(self, row: Row) -> None:
-        """Append a row; raises `InputError` if the disk is full, and keeps the other rows."""
+        """Append a row; if the disk is full, raise `InputError` and keep the other rows."""
         line = _write_line(self._cells(row))
         begin = self._end
         self._append(line)
         self._where[row.row] = begin, len(line)
 
     def close(self) -> None:
-        """Sort the rows if all are present, and close the file."""
+        """Sort the rows if none is missing, and close the file."""
         if self.count == len(self._plan) and (np.diff(self._where[:, 0]) < 0).any():
             with atomic_write(self.path) as ordered:
                 ordered.write(self._head)
@@ -94,7 +94,7 @@ class RowFile:
         self._file.close()
 
     def read(self) -> Iterator[Dict[str, str]]:
-        """Yield the existing rows in order."""
+        """Yield the existing rows, sorted by number."""
         file = LineFile(self.path, older=True) if self._file.closed else self._file
         try:
             for line in file.parts(self._list_places()):
@@ -104,7 +104,7 @@ class RowFile:
                 file.close()
 
     def _list_places(self) -> Iterator[Tuple[int, int]]:
-        """Yield begin and length of each existing row."""
+        """Yield the start and length of each existing row."""
         return ((begin, length) for begin, length in self._where.tolist() if begin >= 0)
 
     def _make_conflict(self) -> InputError:
@@ -127,7 +127,7 @@ class RowFile:
         self._end += len(line)
 
     def _index_rows(self) -> int:
-        """Index the rows, and return the number of valid bytes: an incomplete row is dropped."""
+        """Index the rows, and return the number of valid bytes; an incomplete row is dropped."""
         lines = self._file.lines()
         head = next(lines, b"")
         if head != self._head:
@@ -184,7 +184,7 @@ class RowFile:
 
 
 def compute_fingerprint(plan: AnyPlan, row: int) -> str:
-    """Return a digest of the inputs of a row or of its error; "" if they cannot be digested."""
+    """Return a digest of the inputs of a row, or of its error; "" if there is no digest."""
     try:
         return plan.make_spec(row).fingerprint()
     except QuadcoreError as error:
@@ -198,7 +198,7 @@ def _write_line(cells: Sequence[Any]) -> bytes:
 
 
 def _is_measure(text: str) -> bool:
-    """Whether a cell contains a metric."""
+    """Whether a cell contains the value of a metric."""
     return text in ("", "inf", "-inf") or parse_number(text) is not None
 
 
@@ -206,7 +206,7 @@ def _escape(value: Any) -> Any:
     if isinstance(value, str):
         if parse_number(value) is not None:
             return value
-        # Each row must be one line.
+        # Each row must fit on one line.
         return escape_cell(value.replace("\n", "\\n").replace("\r", "\\r"))
     return "" if value != value else value
 
@@ -214,5 +214,5 @@ def _escape(value: Any) -> Any:
 def _split_line(line: bytes) -> List[str]:
     try:
         return next(csv.reader([line.decode("utf-8", "replace")]), [])
-    except csv.Error:  # of a damaged file
+    except csv.Error:  # the file is damaged
         return []

@@ -1,4 +1,4 @@
-"""Description of a row of a sweep, which can be pickled and run anywhere."""
+"""Specification of a row of a sweep, which can be pickled and run in any process."""
 
 from __future__ import annotations
 
@@ -28,30 +28,30 @@ from . import motion_metrics
 Measures = Mapping[str, float]
 
 REFUSED = "refused: "
-"""Prefix of the failure of a row with invalid input, which did not run."""
+"""Prefix of the failure of a row that did not run because its input is invalid."""
 
 
 @dataclass(frozen=True)
 class UserController:
-    """User-defined controller, made in the process of the flight."""
+    """User-defined controller, which is made in the process of the flight."""
 
     text: str
     """``MODULE:CLASS``."""
     values: Tuple[Tuple[str, float], ...]
-    """Values to set: rate, delay, parameters."""
+    """Values of rate, delay and parameters."""
     source: str
-    """Digest of the text of its module, without imported modules."""
+    """Digest of the source of its module, without imported modules."""
     privileged: bool
-    """Whether it receives the simulation instead of a view of the vehicle."""
+    """Whether the controller receives the simulation instead of a view of the vehicle."""
 
     @classmethod
     def of(cls, text: str, values: Mapping[str, Any], privileged: bool) -> UserController:
-        """Find the module without importing it."""
+        """Read the controller's module without importing it."""
         given = tuple((name, value) for name, value in values.items() if value is not None)
         return cls(text, given, compute_digest(read_source(split_name(text).place)), privileged)
 
     def make(self, vehicle: str) -> Any:
-        """Import and make the controller; raises `InputError`."""
+        """Import the module and make the controller; raise `InputError` if this fails."""
         made = controllers.parse(self.text, vehicle, dict(self.values))
         return made if self.privileged else restrict(made)
 
@@ -62,26 +62,26 @@ class Flight:
 
     row: int
     names: Mapping[str, Any]
-    """First columns of the table."""
+    """Values of the first columns of the table."""
     plan: FlightPlan
-    """Plan; without a controller if `own` is given."""
+    """Plan of the flight; it has no controller if `own` is given."""
     own: Optional[UserController]
     limit: float
     """Wall-clock limit, s."""
     criteria: Criteria = DEFAULT
 
     def fingerprint(self) -> str:
-        """Return a digest of all inputs; "" if they cannot be digested."""
+        """Return a digest of all inputs; "" if an input has no digest."""
         try:
             known = self.plan.fingerprint()
-        except InputError:  # a user-defined controller or reference object
+        except InputError:  # user-defined objects have no digest
             return ""
         if self.own is not None:
             known = compute_digest(f"{known} {self.own}".encode())
         return known and self._add_criteria(known)
 
     def _add_criteria(self, known: str) -> str:
-        """Add the criteria to a digest; "" if a metric is a function, which has none."""
+        """Add the criteria to a digest; "" if a metric is a function object."""
         if self.criteria == DEFAULT:
             return known
         names = [metric for metric in self.criteria.metrics if isinstance(metric, str)]
@@ -104,13 +104,13 @@ class Flight:
         return get_measures(self.fly(), self.criteria, self.limit)
 
     def fly(self) -> FlightRecord:
-        """Simulate the flight of a controller; raises `QuadcoreError` if it cannot start."""
+        """Simulate a flight with a controller; raise `QuadcoreError` if it cannot start."""
         return fly_alone(
             self._plan_with_controller, self.limit, timed=False, criteria=self.criteria
         )
 
     def watch(self) -> Log:
-        """Simulate the flight again and return a decimated log, also of a failed flight.
+        """Simulate the flight again, and return its decimated log, even if it fails.
 
         Raises
         ------
@@ -131,17 +131,17 @@ class Flight:
 
 
 class RowSpec(Protocol):
-    """A row of a sweep."""
+    """Specification of a row of a sweep."""
 
     @property
     def row(self) -> int:
         """Row number."""
 
     def fingerprint(self) -> str:
-        """Return a digest of all inputs; "" if they cannot be digested."""
+        """Return a digest of all inputs; "" if an input has no digest."""
 
     def measure(self) -> Measures:
-        """Return the metrics; raises `QuadcoreError`."""
+        """Return the metrics; raise `QuadcoreError` if the row fails."""
 
 
 class Row(NamedTuple):
@@ -149,13 +149,13 @@ class Row(NamedTuple):
 
     row: int
     failure: str
-    """Reason for missing metrics, with the prefix `REFUSED` for invalid input; "" for success."""
+    """Reason why there are no metrics; "" for success. `REFUSED` precedes errors of the input."""
     measures: Optional[Measures]
     fingerprint: str
 
 
 class FlownRow(NamedTuple):
-    """Row of a user-defined controller, which another process than the controller's measures."""
+    """Row with a user-defined controller; a process without user code computes its metrics."""
 
     spec: Flight
     flight: FlightRecord
@@ -168,7 +168,7 @@ def fly_row(spec: RowSpec) -> Row:
 
 
 def fly_user_code(spec: RowSpec) -> Union[FlownRow, Row]:
-    """Run a row in the process of a user-defined controller; another process measures it."""
+    """Run a row in the process of a user-defined controller, but do not measure it there."""
     if not isinstance(spec, Flight):
         return fly_row(spec)
     flown = []
@@ -177,7 +177,7 @@ def fly_user_code(spec: RowSpec) -> Union[FlownRow, Row]:
 
 
 def measure_row(found: Union[FlownRow, Row]) -> Row:
-    """Compute the metrics of a row, unless they are known."""
+    """Compute the metrics of a row, unless they are already known."""
     if isinstance(found, Row):
         return found
     spec, flight, fingerprint = found
@@ -186,7 +186,7 @@ def measure_row(found: Union[FlownRow, Row]) -> Row:
 
 
 def get_measures(flight: FlightRecord, criteria: Criteria, limit: float) -> Measures:
-    """Return the metrics of a flight within a time limit; raises `FlightError` if it failed."""
+    """Return the metrics of a flight within a time limit; raise `FlightError` if it failed."""
     with time_limit(limit):
         outcome = measure_record(flight, criteria)
     if outcome.failure:
@@ -195,7 +195,7 @@ def get_measures(flight: FlightRecord, criteria: Criteria, limit: float) -> Meas
 
 
 def _contain(row: int, fingerprint: str, measure: Callable[[], Optional[Measures]]) -> Row:
-    """Call a function that returns metrics, and let any error of it fail its row only."""
+    """Call a function that returns metrics; any error only fails this row."""
     try:
         return Row(row, "", measure(), fingerprint)
     except QuadcoreError as error:
@@ -204,7 +204,7 @@ def _contain(row: int, fingerprint: str, measure: Callable[[], Optional[Measures
         failure = "no memory left"
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # SystemExit too: user code must not end the sweep
+    except BaseException as error:  # includes SystemExit: user code must not end the sweep
         failure = describe_error(error)
     return Row(row, " ".join(failure.split()), None, fingerprint)
 
@@ -215,12 +215,12 @@ def describe_failure(error: QuadcoreError) -> str:
 
 
 def compute_digest(data: bytes) -> str:
-    """Return the hexadecimal SHA-256."""
+    """Return the SHA-256 digest in hexadecimal."""
     return hashlib.sha256(data).hexdigest()
 
 
 def read_source(module: str) -> bytes:
-    """Return the text of a module or file without importing it; empty if it cannot be found."""
+    """Return the source of a module or file without importing it; empty if it is not found."""
     if controllers.names_plugin(module):
         return find_library(module).read_bytes()
     loaded = sys.modules.get(module)

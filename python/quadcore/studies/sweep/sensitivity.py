@@ -1,10 +1,10 @@
 """Sensitivity of the metrics of a sweep to its parameters.
 
-PAWN indices exist for every design and rank the parameters; see `pawn`. Rank correlations
-(Spearman) add the direction of an effect; they miss effects that are not monotonic. The design
-"saltelli" also gives Sobol indices: the share of the variance that a parameter causes alone (first
-order) and together with others (total). See Saltelli et al., Computer Physics Communications 181,
-2010.
+PAWN indices exist for every design and rank the parameters; see `pawn`. Spearman's rank correlation
+adds the direction of an effect, but misses effects that are not monotonic. The design "saltelli"
+also gives Sobol indices. They are the share of the variance that a parameter causes alone (first
+order), and including interactions with others (total). See Saltelli et al., Computer Physics
+Communications 181, 2010.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ def compute_sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any
     plan
         Plan of the sweep.
     columns
-        Results, in the order of the rows.
+        Results in the order of the rows.
 
     Returns
     -------
     list of dict
-        Row per combination, metric and numeric axis, the strongest effect first. ``pawn`` is the
-        PAWN index; the half-width of its 95 % interval and its noise follow. ``rank`` is the rank
-        correlation. ``first`` and ``total``, with their half-widths, are NaN for other designs, for
-        axes without a distribution, and if rows failed.
+        Row per combination, metric and numeric axis, sorted by decreasing effect. ``pawn`` is the
+        PAWN index, followed by the half-width of its 95 % interval and by its noise. ``rank`` is
+        the rank correlation. ``first`` and ``total`` are Sobol indices with half-widths. They are
+        NaN for other designs, for axes without a distribution, and if rows failed.
     """
     found = []
     for names, chosen in list_combinations(columns):
@@ -66,13 +66,13 @@ def compute_sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any
 
 
 def measure_effect(row: Mapping[str, Any]) -> float:
-    """Return the index by which axes are ranked: the total Sobol index, else PAWN, else |rank|."""
+    """Return the effect size that ranks the axes: total Sobol index, else PAWN, else |rank|."""
     sizes = row["total"], row["pawn"], abs(row["rank"])
     return next((float(size) for size in sizes if not math.isnan(size)), 0.0)
 
 
 def list_combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.ndarray]]:
-    """Yield the names of each combination and the indices of its rows."""
+    """Yield the names of each combination, and the indices of its rows."""
     shared = [name for name in COMBINATION if name in columns]
     count = len(columns["row"])
     if not shared:
@@ -87,7 +87,7 @@ def list_combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.nda
 def list_metrics(
     plan: AnyPlan, columns: Columns, chosen: np.ndarray
 ) -> Iterator[Tuple[str, np.ndarray]]:
-    """Yield the metrics of some rows; also `FAILED` if some of them failed."""
+    """Yield the metrics of some rows, and `FAILED` if only some of them failed."""
     failed = (columns["failure"][chosen] != "").astype(float)
     for name in plan.measures:
         values = columns[name][chosen].astype(float)
@@ -98,7 +98,7 @@ def list_metrics(
 
 
 def list_numeric_axes(plan: AnyPlan, columns: Columns) -> List[str]:
-    """List the axes with several numeric values."""
+    """List the axes with more than one numeric value."""
     return [
         name
         for name in plan.design.names
@@ -107,7 +107,7 @@ def list_numeric_axes(plan: AnyPlan, columns: Columns) -> List[str]:
 
 
 def _rank_correlation(axis: np.ndarray, values: np.ndarray) -> float:
-    """Compute the rank correlation of the finite values; NaN for fewer than three."""
+    """Compute the rank correlation of finite values; NaN for fewer than three values."""
     known = np.isfinite(values)
     if known.sum() < 3:
         return math.nan

@@ -1,4 +1,4 @@
-"""Run and resume sweeps."""
+"""Sweeps, which can be interrupted and resumed."""
 
 from __future__ import annotations
 
@@ -52,8 +52,9 @@ class Sweep(NamedTuple):
     Attributes
     ----------
     columns : dict of str to ndarray
-        Columns by name: ``row``, the conditions, ``failure`` ("" for success), the metrics, NaN
-        after a failure, and ``fingerprint``. pandas and polars convert it to a DataFrame.
+        Columns by name: ``row``, the conditions, ``failure`` ("" for success), the metrics (NaN
+        after a failure), and ``fingerprint``. Both pandas and polars convert the dictionary to a
+        DataFrame.
     sensitivities : list of dict
         Sensitivity of each metric to each parameter; see `compute_sensitivities`.
     """
@@ -102,7 +103,7 @@ def sweep(
     dask: Optional[str] = None,
     **options: Unpack[CriteriaKeywords],
 ) -> Sweep:
-    """Simulate many flights over a grid or a random sample of parameters.
+    """Simulate many flights over a grid or random samples of parameters.
 
     Parameters
     ----------
@@ -110,27 +111,29 @@ def sweep(
         As for `evaluate`.
     vary
         Values by axis, as for `evaluate`: a list, a text (``"0.9:1.1:5"``, ``"log:1:100:9"`` or
-        ``"normal:1:0.1"``), or a distribution with a method ``ppf`` such as those of scipy.stats.
+        ``"normal:1:0.1"``), or a distribution with a method ``ppf``, such as those of
+        ``scipy.stats``.
     commands
         Rotor commands of an open-loop flight, instead of controllers and references.
     function, measures
-        Function to call instead of simulating flights. It receives a dictionary of the values of a
-        point and returns a number, or a mapping with the names in `measures`.
+        Function to call instead of simulating flights. It is called with a dictionary of the values
+        of a point. It returns a number, or a mapping with the names in `measures`.
     points
-        CSV file; each row is a point of the axes in the header.
+        CSV file with a header of axis names and one point per row.
     design, samples
-        Sampling of axes with a distribution, "latin", "sobol", "random" or "saltelli", and the
-        number of samples. `seed` fixes the sample.
+        Sampling of the axes with a distribution ("latin", "sobol", "random" or "saltelli"), and
+        number of samples. The samples depend on `seed`.
     engines, engine, models
         As for `evaluate`.
     out
-        Folder for ``table.csv``, which receives each completed row and is sorted at the end.
+        Folder for ``table.csv``. Each completed row is appended at once, and the file is sorted at
+        the end.
     parquet
-        Whether to write also ``table.parquet`` at the end.
+        Whether to write ``table.parquet`` as well.
     resume
-        Whether to continue the sweep in `out`; completed rows are kept.
+        Whether to continue the sweep in `out` and keep its completed rows.
     executor
-        Executor as in concurrent.futures, instead of `processes`.
+        Executor with the interface of ``concurrent.futures``, instead of `processes`.
     dask
         Address of a Dask scheduler, instead of `processes`.
     **options
@@ -138,17 +141,17 @@ def sweep(
     Returns
     -------
     Sweep
-        Results that do not depend on where and in which order the rows run.
+        Results, which do not depend on where and in which order the rows run.
 
     Raises
     ------
     InputError
-        If an argument is invalid, before the first row; or if the disk is full. Completed rows are
+        If an argument is invalid (before the first row), or if the disk is full. Completed rows are
         kept.
     QuadcoreError
         If the executor or the scheduler fails. Completed rows are kept.
     KeyboardInterrupt
-        Completed rows are kept.
+        On Ctrl-C. Completed rows are kept.
     """
     shared = SweepOptions(**options)
     made, shared = make_design(vary or {}, shared, points, design, samples)
@@ -186,7 +189,7 @@ def fly_plan(
     dask: Optional[str] = None,
     progress: Optional[Progress] = None,
 ) -> RowFile:
-    """Simulate the missing rows of a plan; parameters as for `sweep`."""
+    """Simulate the missing rows of a plan; the parameters are those of `sweep`."""
     if executor is not None and dask is not None:
         raise InputError("both executor and dask are given. Give one of them.")
     rows = RowFile(folder / TABLE, plan, resume)

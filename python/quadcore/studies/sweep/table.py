@@ -1,4 +1,4 @@
-"""Columns of a sweep, in memory or as Parquet."""
+"""Columns of a sweep in memory or in a Parquet file."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ...support.output_files import atomic_write
 from .row_file import RowFile
 
 _TEXTS = ("failure", "fingerprint")
-_MANY = 10_000  # rows in memory at a time
+_MANY = 10_000  # maximum number of rows in memory
 
 
 def make_table(rows: RowFile) -> Dict[str, np.ndarray]:
-    """Return all rows by column, as numbers if all values are numbers."""
+    """Return all rows by column; a column is numeric if all its values are numbers."""
     texts = _text_columns(rows)
     columns: Dict[str, Any] = {
         name: [] if name in texts else array.array("Q" if name in rows.whole else "d")
@@ -31,7 +31,7 @@ def make_table(rows: RowFile) -> Dict[str, np.ndarray]:
 
 
 def write_parquet(rows: RowFile, path: Path) -> None:
-    """Write the rows as Parquet.
+    """Write the rows to a Parquet file.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def write_parquet(rows: RowFile, path: Path) -> None:
 
 
 def _text_columns(rows: RowFile) -> List[str]:
-    """List the columns that contain texts."""
+    """List the columns that contain text."""
     found = list(_TEXTS)
     for row in rows.read():
         found += [

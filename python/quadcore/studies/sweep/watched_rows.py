@@ -1,4 +1,4 @@
-"""Rows of a sweep to watch: simulated again, as a sweep keeps no logs."""
+"""Rows of a sweep that are simulated again for animations, because a sweep keeps no logs."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class WatchedRow(NamedTuple):
 
 
 def watch_rows(plan: AnyPlan, columns: Mapping[str, np.ndarray], measure: str) -> List[WatchedRow]:
-    """Simulate the rows of median and maximum metric and the first failed row again.
+    """Simulate again the rows with the median and the maximum metric, and the first failed row.
 
-    Rows that call a function are no flights; rows that cannot start are left out.
+    Rows that call a function and rows that cannot start are omitted.
     """
     chosen = _choose_rows(columns, measure)
     specs = [plan.make_spec(row) for row in chosen.values()]
@@ -56,7 +56,7 @@ def write_watched_rows(rows: List[WatchedRow], folder: Path) -> List[Path]:
 
 
 def make_player(rows: List[WatchedRow]) -> Any:
-    """Make an animation of the rows; empty without any."""
+    """Make an animation of the rows; "" without rows."""
     from ...report.player import PlayerFlight, make_section  # jinja2 is slow to import
 
     if not rows:

@@ -1,4 +1,4 @@
-"""Gain tuning on training cases, checked on held-out cases."""
+"""Gain tuning with training cases, checked on held-out cases."""
 
 from .search import Tuning
 from .tune import tune

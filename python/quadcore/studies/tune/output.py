@@ -30,23 +30,23 @@ from .trials import Flown, Trial, judge
 GAINS = "gains.yaml"
 PAGE = "report.html"
 FILES = (DOCUMENT, PAGE)
-"""Files of a folder, in addition to logs, models and plots."""
+"""Files in the folder, in addition to logs, models and plots."""
 
 _START, _TUNED = "start", "tuned"
 _SEARCH = ("engine", "duration", "dt", "models", "tuned_on", "optimiser", "seed", "budget", "vary")
 
 
 def write(found: Tuning, problem: Problem, folder: Path, plots: bool = True) -> List[Path]:
-    """Write ``run.json``, logs, model, plots and page.
+    """Write ``run.json``, the logs, the model, the plots and the page.
 
     Parameters
     ----------
     found, problem
-        Result and its problem.
+        Result, and problem that it solves.
     folder
         Existing folder.
     plots
-        Whether to draw.
+        Whether to draw plots.
     """
     from ...report.page import write_page  # jinja2 is slow to import
 
@@ -111,7 +111,7 @@ def _describe_gain(name: str, start: float, value: float) -> Dict[str, str]:
 def _fly(
     problem: Problem, gains: List[Tuple[str, Mapping[str, float]]], trial: Trial
 ) -> List[Tuple[str, Log]]:
-    """Simulate a trial with sets of gains; flights that fail are left out."""
+    """Simulate a trial with several sets of gains; flights that fail are omitted."""
     logs: Dict[str, Log] = {}
 
     def fly(each: Tuple[str, Mapping[str, float]]) -> Log:
@@ -127,7 +127,7 @@ def _fly(
 
 
 def _measure(problem: Problem, gains: Mapping[str, float]) -> Dict[str, str]:
-    """Measure the RMS tracking error of gains in each held-out trial."""
+    """Measure the RMS tracking error with these gains in each held-out trial."""
     trials = problem.held_out
     errors: Dict[str, str] = {}
 

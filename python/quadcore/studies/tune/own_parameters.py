@@ -16,14 +16,14 @@ from ..time_limit import time_limit
 
 
 def read_own(text: str, plan: FlightPlan, limit: float) -> Gains:
-    """Read timing and parameters of a user-defined controller.
+    """Read the timing and the parameters of a user-defined controller.
 
     Parameters
     ----------
     text
         Controller, as for `controllers.parse`.
     plan
-        Plan of a flight. A plugin is added to its vehicle.
+        Plan of a flight; a plugin controller is added to its vehicle.
     limit
         Wall-clock limit, s.
 
@@ -46,7 +46,7 @@ def read_own(text: str, plan: FlightPlan, limit: float) -> Gains:
 
 
 def _read_tags(text: str, plan: FlightPlan) -> Gains:
-    """Return the tags of a plugin that are numbers, with the given and the default values."""
+    """Return the numeric tags of a plugin with their given or default values."""
     made = controllers.parse(text)
     simulation = replace(plan, controller=made, on_reference=False).simulation()
     (plugin,) = (each for each in simulation.plugins if each.name == NAME)

@@ -1,4 +1,4 @@
-"""Plot of a search for gains."""
+"""Plot of a gain search."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def draw_search(errors: Sequence[float]) -> Figure:
-    """Draw the objective of each gain set, and the lowest so far."""
+    """Draw the objective of each gain set, and the lowest value so far."""
     figure, grid = panels("Mean RMS tracking error of each gain set", 1, height=2.8, above=0.4)
     axes = grid[0, 0]
     numbers = np.arange(1, 1 + len(errors))

@@ -33,11 +33,11 @@ from .trials import RETURN_TIME, Flown, Trial, TrialResult, judge
 _GAIN = re.compile(r"(k[pidrw]|[qr])_\w+")
 
 _UNLISTED = ("duration", "dt", "seed", "scenario", "processes", "progress")
-"""Options that the history omits or lists separately."""
+"""Options that the history omits or lists elsewhere."""
 
 
 class Problem:
-    """Controller, start of the gains, and cases.
+    """Controller, start gains, training cases and held-out cases.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Problem:
     Raises
     ------
     InputError
-        If an argument is invalid; no flight has run.
+        If an argument is invalid. In this case no flight runs.
     """
 
     def __init__(
@@ -117,7 +117,7 @@ class Problem:
         self.start = self._start_gains(only)
 
     def describe_controller(self, gains: Mapping[str, float]) -> Gains:
-        """Describe the controller with some gains, as a gains file does."""
+        """Describe the controller with these gains in the form of a gains file."""
         if self._own is not None:
             given: Dict[str, Any] = {
                 name: x for name, x in self._cases.control.timing.items() if x is not None
@@ -133,11 +133,11 @@ class Problem:
         return self._cases.control.make(0, self.vehicle, gains)
 
     def fly(self, trial: Trial, gains: Mapping[str, float]) -> TrialResult:
-        """Simulate and judge a trial; raises as `simulate`."""
+        """Simulate and judge a trial; the errors are those of `simulate`."""
         return judge(trial, self.simulate(trial, gains), self.options.failure_distance)
 
     def simulate(self, trial: Trial, gains: Mapping[str, float]) -> Flown:
-        """Simulate a trial; raises `InputError` if the controller rejects gains or vehicle."""
+        """Simulate a trial; raise `InputError` if the controller rejects gains or vehicle."""
         try:
             return Flown(self.make_plan(trial, gains).fly(), "")
         except FlightError as error:
@@ -146,7 +146,7 @@ class Problem:
             return Flown(error.log, str(error))
 
     def simulate_return(self, trial: Trial, gains: Mapping[str, float]) -> List[Flown]:
-        """Simulate a trial from the reference and from an offset, until the first failure."""
+        """Simulate a trial from the reference, then from an offset, until the first failure."""
         longer = trial._replace(plan=replace(trial.plan, duration=RETURN_TIME))
         flown: List[Flown] = []
         for has_offset in (False, True):
@@ -158,19 +158,19 @@ class Problem:
     def fly_together(
         self, flights: Sequence[Tuple[Trial, Mapping[str, float]]], limit: float
     ) -> Optional[List[TrialResult]]:
-        """Simulate and judge trials on one batch, bit-identical to single flights.
+        """Simulate and judge trials on one batch, bit-identical to separate flights.
 
         Parameters
         ----------
         flights
-            Trials, all with or all without an offset, and their gains.
+            Trials with their gains. Either all or none of them have an offset.
         limit
             Wall-clock limit of each flight, s.
 
         Returns
         -------
         list of TrialResult, or None
-            Results; None if only single flights are possible.
+            Results; None if the flights cannot share a batch.
         """
         records = fly_group([partial(self.make_plan, *flight) for flight in flights], limit)
         if records is None:
@@ -184,7 +184,7 @@ class Problem:
         """Group the indices of flights that can share a batch."""
         if self.runs_user_code:
             return [[i] for i in range(len(flights))]
-        # An offset is one more change of the state at the start.
+        # An offset changes the initial state once more, so these flights need another batch.
         kinds = [
             [i for i, (trial, _) in enumerate(flights) if trial.has_offset == has_offset]
             for has_offset in (False, True)
@@ -193,15 +193,15 @@ class Problem:
         return [group for rows in kinds for group in share_out(rows, processes)]
 
     def make_plan(self, trial: Trial, gains: Mapping[str, float]) -> FlightPlan:
-        """Make the plan of a trial; raises `InputError` if the controller rejects the gains."""
+        """Make the plan of a trial; raise `InputError` if the controller rejects the gains."""
         return trial.make_plan(self._make_controller({**gains, **trial.values}))
 
     def watch(self, trial: Trial, gains: Mapping[str, float]) -> Log:
-        """Simulate a trial with gains and return its decimated log; raises `QuadcoreError`."""
+        """Simulate a trial, and return its decimated log; raise `QuadcoreError` if it fails."""
         return decimate(self.make_plan(trial, gains).fly())
 
     def list_settings(self) -> Dict[str, Any]:
-        """Return the settings of the flights, as plain values."""
+        """Return the settings of the flights as plain values."""
         plan = self.training[0].plan
         values = {each.name: getattr(self.options, each.name) for each in fields(ControlOptions)}
         axes = {axis.name: list(axis.values) for axis in self._cases.design.listed}

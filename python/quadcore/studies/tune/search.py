@@ -1,4 +1,4 @@
-"""Search for gains."""
+"""Search for the best gains."""
 
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ OBJECTIVE = (
     "error, m"
 )
 
-_SPREAD = 0.8  # initial deviation of the logarithm of a gain: a factor of 2.2
+_SPREAD = 0.8  # initial standard deviation of the logarithm of a gain: a factor of 2.2
 
 
 class Tuning(NamedTuple):
     """Result of a tuning."""
 
     gains: Gains
-    """Best gains with the history of the search; all held-out cases succeed with them."""
+    """Best gains, with which all held-out cases succeed, and the history of the search."""
     error: float
-    """`OBJECTIVE` of these gains."""
+    """`OBJECTIVE` with these gains."""
     start: float
-    """`OBJECTIVE` of the gains at the start."""
+    """`OBJECTIVE` with the start gains."""
     evaluations: List[float]
-    """`OBJECTIVE` of each candidate, the start first."""
+    """`OBJECTIVE` of each candidate; the first one is the start."""
     held_out: Dict[str, float]
     """RMS tracking error in each held-out case, m."""
     refused: int
-    """Number of candidates that were better on the training cases but failed a held-out case."""
+    """Number of candidates that improved the training cases but failed a held-out case."""
 
 
 class Search:
-    """State of a search."""
+    """State of a gain search."""
 
     def __init__(
         self,
@@ -67,11 +67,11 @@ class Search:
         self._least = math.inf
 
     def run(self, cma: Any) -> None:
-        """Search until the budget is spent."""
+        """Search until the budget is used up."""
         start = self._problem.start
         self._check(start)
         self._try([start])
-        # A separate generator: numpy's global one belongs to the caller.
+        # Use a separate generator, because the global one of NumPy belongs to the caller.
         drawn = np.random.default_rng(self._seed)
         strategy = cma.CMAEvolutionStrategy(
             np.zeros(len(start)),
@@ -88,7 +88,7 @@ class Search:
             strategy.tell(points, self._try([self._scale_gains(point) for point in points]))
 
     def _check(self, start: Mapping[str, float]) -> None:
-        """Report an invalid controller or vehicle at once."""
+        """Raise the error of an invalid controller or vehicle before the search."""
         problem = self._problem
         if not problem.runs_user_code:
             for case in problem.training:
@@ -109,8 +109,8 @@ class Search:
             raise errors[0]
 
     def make_tuning(self, cma: Any, ended: str) -> Optional[Tuning]:
-        """Return the best result so far."""
-        from ... import __version__  # defined after this module
+        """Return the best result so far, or None."""
+        from ... import __version__  # __version__ is defined after this module is imported
 
         if self._best is None:
             return None
@@ -141,7 +141,7 @@ class Search:
         return {name: value * math.exp(x) for (name, value), x in zip(start.items(), point)}
 
     def _try(self, candidates: Sequence[Mapping[str, float]]) -> List[float]:
-        """Evaluate candidates, and check the best one if it is better than all before."""
+        """Evaluate candidates, and check the best one if it improves on all earlier candidates."""
         training = self._problem.training
         flights = self._fly([(case, gains) for gains in candidates for case in training])
         count = len(training)
@@ -187,7 +187,7 @@ class Search:
         self.refusal = f"the best candidates {reason}"
 
     def _run(self, fly: Callable[[int], Any], count: int, take: Callable[[int, Any], None]) -> None:
-        """Call a function with each index; flights of user code share no state."""
+        """Call a function for each index; flights with user code share no state."""
         apart = self._problem.runs_user_code
         run_contained(fly, range(count), take, self._processes, apart=apart)
 
@@ -197,7 +197,7 @@ class Search:
         groups = problem.group(flights)
 
         def describe(error: QuadcoreError) -> TrialResult:
-            # Gains that the controller rejects count as the worst.
+            # Gains that the controller rejects get the worst result.
             return TrialResult(problem.options.failure_distance, str(error))
 
         def take(task: int, found: Union[List[Any], QuadcoreError]) -> None:
@@ -225,6 +225,6 @@ class Search:
             except QuadcoreError as error:
                 return describe(error)
 
-        # Indices, as a reference may be a function, which cannot be pickled.
+        # Pass indices, because a reference may be a function that cannot be pickled.
         self._run(fly, len(groups), take)
         return outcomes  # type: ignore[return-value]

@@ -1,4 +1,4 @@
-"""Flights that evaluate gains, and their verdicts."""
+"""Flights that evaluate gains, and their results."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from ...support import rotation
 from ..tracking_metrics import compute_errors, describe_failure, find_failure_time
 
 OFFSET, TURN = (0.3, -0.2, 0.25), (0.1, -0.1, 0.2)
-"""Offset of the start from the reference in the world (m), and turn about frame axes (rad)."""
+"""Initial offset from the reference in world axes (m), and rotation about body axes (rad)."""
 RETURN_TIME = 10.0
-"""Time to return from the offset, s."""
-_LAST = 2.0  # s; final part of it, in which the distance is measured
-_REMAINDER = 0.5  # maximum share of the offset that may remain: z of `pd` has a pole at -0.22 1/s
+"""Duration of the return from the offset, s."""
+_LAST = 2.0  # s; final part in which the distance is measured
+_REMAINDER = 0.5  # maximum remaining part of the offset; z of `pd` has a pole at -0.22 1/s
 
 
 class Trial(NamedTuple):
     """Flight for the evaluation of gains."""
 
     label: str
-    """Name of the reference; also of model, point and seed if there are several."""
+    """Name of the reference; with several models, points or seeds, also their names."""
     plan: FlightPlan
     """Plan without a controller."""
     values: Mapping[str, float]
-    """Values of the point for the controller."""
+    """Values of the point that belong to the controller."""
     has_offset: bool = False
-    """Whether it starts `OFFSET` and `TURN` away from the reference."""
+    """Whether the flight starts at `OFFSET` and `TURN` from the reference."""
 
     def make_plan(self, controller: Any) -> FlightPlan:
-        """Make the plan with a controller."""
+        """Add a controller to the plan, and the offset if there is one."""
         if not self.has_offset:
             return replace(self.plan, controller=controller)
         values = {each.name: getattr(self.plan, each.name) for each in fields(self.plan)}
@@ -43,25 +43,25 @@ class Trial(NamedTuple):
 
 
 class Flown(NamedTuple):
-    """Flight of a trial."""
+    """Simulated flight of a trial."""
 
     log: Log
     failure: str
-    """Reason of a failure; "" for success."""
+    """Reason for the failure; "" for success."""
 
 
 class TrialResult(NamedTuple):
-    """Result of gains in a trial."""
+    """Result of a trial with some gains."""
 
     error: float
-    """RMS tracking error, m; after a failure, the error is the failure distance."""
+    """RMS tracking error, m. From a failure on, the error is the failure distance."""
     failure: str
-    """Reason of a failure; "" for success."""
+    """Reason for the failure; "" for success."""
 
 
 @dataclass(frozen=True, eq=False)
 class _OffsetPlan(FlightPlan):
-    """Plan of a flight from an offset."""
+    """Plan of a flight that starts at an offset."""
 
     def list_placements(self, simulation: Simulation) -> Iterator[State]:
         yield from super().list_placements(simulation)
@@ -72,14 +72,14 @@ class _OffsetPlan(FlightPlan):
 
 
 def judge(trial: Trial, flown: Flown, failure_distance: float) -> TrialResult:
-    """Compute the result of a trial, which needs no code of the controller.
+    """Compute the result of a trial; this runs no code of the controller.
 
     Parameters
     ----------
     trial, flown
-        Trial and its flight.
+        Trial, and its simulated flight.
     failure_distance
-        Distance from the reference at which a flight has failed, m.
+        Tracking error above which a flight has failed, m.
     """
     log, failure = flown
     away = compute_errors(log)
@@ -88,16 +88,16 @@ def judge(trial: Trial, flown: Flown, failure_distance: float) -> TrialResult:
     if late is not None:
         failure = describe_failure(log, failure_distance)
         away[log.time >= late] = failure_distance
-    # The missing part of a failed flight counts as failed.
+    # The missing rest of a failed flight counts as failed.
     rest = max(0.0, 1 - (log.time[-1] - log.time[0]) / trial.plan.duration) if failure else 0.0
     square = (1 - rest) * np.mean(away**2) + rest * failure_distance**2
     return TrialResult(float(np.sqrt(square)), failure)
 
 
 def judge_return(flown: Sequence[Flown]) -> str:
-    """Check that a flight from an offset returns to the flight from the reference.
+    """Check that a flight from an offset approaches the flight from the reference.
 
-    On the reference, a controller with a perfect model hardly needs its gains. Their purpose is to
+    On the reference, a controller with a perfect model hardly uses its gains. They are needed to
     correct an offset.
 
     Parameters
@@ -108,7 +108,7 @@ def judge_return(flown: Sequence[Flown]) -> str:
     Returns
     -------
     str
-        Reason of a failure; "" for success.
+        Reason for the failure; "" for success.
     """
     if flown[-1].failure:
         return flown[-1].failure

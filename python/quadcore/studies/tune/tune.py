@@ -59,7 +59,7 @@ def tune(
     ----------
     controller
         Controller name, ``NAME:KEY=VALUE,...``, gains file, one of `quadcore.controllers`, or your
-        own controller as ``MODULE:NAME`` or ``FILE.py[:NAME]``. The search starts at its
+        own controller as ``MODULE:NAME`` or ``FILE.py[:NAME]``. The search starts from its
         parameters.
     model
         One or several models; the gains file names the first one.
@@ -88,11 +88,11 @@ def tune(
     Raises
     ------
     InputError
-        If an argument is invalid or the package cma is missing; no flight has run.
+        If an argument is invalid or the package cma is missing. In this case no flight runs.
     FlightError
-        If every candidate is rejected. Its attribute `evaluations` is that of `Tuning`.
+        If every candidate is rejected. The error has the attribute `evaluations`, as in `Tuning`.
     KeyboardInterrupt
-        With the attribute `tuning`, the best result so far, or None.
+        On Ctrl-C. The attribute `tuning` is the best result so far, or None.
     """
     shared = ControlOptions(**options)
     flown = to_list(model), to_list(references)
@@ -103,7 +103,7 @@ def tune(
 
 
 def search_gains(problem: Problem, budget: int, progress: Optional[Progress] = None) -> Tuning:
-    """Search for the gains of a problem; raises as `tune` does."""
+    """Search for the gains of a problem; the errors are those of `tune`."""
     cma = _import_cma()
     search = Search(problem, budget, progress)
     try:
