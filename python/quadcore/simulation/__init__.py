@@ -1,1 +1,1 @@
-"""Simulations of one vehicle or a batch: commands, flights, logs, scenarios."""
+"""Simulations of a single vehicle or a batch: commands, flights, logs and scenarios."""

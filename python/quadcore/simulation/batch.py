@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 class BatchSimulation(_core.Batch):
     """Simulate many vehicles of one model, each in its own world.
 
-    Each vehicle moves bit-identically to a `Simulation` of it, whatever the number of vehicles and
+    Each vehicle moves bit-identically to a separate `Simulation`, for any number of vehicles and
     threads. The engines "eigen" and "gazebo11" step several vehicles per instruction if only motors
     and force models act on them. All other vehicles are stepped one by one.
 
@@ -45,16 +45,17 @@ class BatchSimulation(_core.Batch):
     n : int, default 1
         Number of vehicles.
     engine : {"gazebo11", "ode", "eigen"}, default "eigen"
-        Engine.
+        Physics engine.
     parameters : mapping of str to value or array (n,), optional
-        As for `Simulation`. An array contains one value per vehicle; of a tag with k numbers it has
-        the shape (n, k). ``xacro.ARG`` accepts arrays as well.
+        As for `Simulation`. An array contains one value per vehicle; for a tag with k numbers, its
+        shape is (n, k). ``xacro.ARG`` also accepts arrays.
     xacro_args : mapping of str to value or array (n,), optional
         Arguments of a xacro model, equivalent to ``xacro.ARG``.
     spawn : array_like (n, 6), (n, 3), (6,) or (3,), default (0, 0, 10)
-        x, y, z (m) and roll, pitch, yaw (rad) of each vehicle, or of all.
+        x, y, z (m) and roll, pitch, yaw (rad) of each vehicle, or of all vehicles.
     seed : int or array_like (n,), default 0
-        Seed of each vehicle, or of the first; the following vehicles then count up from it.
+        Seed of each vehicle. An int is the seed of the first vehicle, and the following ones count
+        up from it.
     threads : int, optional
         Number of threads. Default: one per processor.
 
@@ -67,18 +68,18 @@ class BatchSimulation(_core.Batch):
     dt : float
         Step, s.
     command_width : int
-        Count of numbers in the command of a vehicle.
+        Number of values in the command of a vehicle.
 
     Raises
     ------
     InputError
-        If the model, the world or an argument is wrong; the message begins with ``FILE:LINE``
-        where a file is at fault.
+        If the model, the world or an argument is invalid. The message begins with ``FILE:LINE`` if
+        a file causes the error.
 
     Warns
     -----
     QuadcoreWarning
-        If input for the first vehicle is suspicious; `warnings(i)` lists the messages of any
+        If valid input for the first vehicle is suspicious; `warnings(i)` lists the messages of any
         vehicle.
     """
 
@@ -119,11 +120,11 @@ class BatchSimulation(_core.Batch):
 
     @property
     def state(self) -> BatchState:
-        """Copy of the present states; a failed vehicle keeps the state in which it failed."""
+        """Copy of the current states; a failed vehicle keeps the state in which it failed."""
         return BatchState.of(self.read_state())
 
     def read_state(self, out: Optional[np.ndarray] = None) -> np.ndarray:
-        """Return the present states as one array.
+        """Return the current states as one array.
 
         Parameters
         ----------
@@ -133,12 +134,12 @@ class BatchSimulation(_core.Batch):
         Returns
         -------
         ndarray (n, 13 + 2 rotors)
-            `out`, with the columns of `BatchState` in their order.
+            `out`, with the columns in the order of `BatchState`.
 
         Raises
         ------
         InputError
-            If `out` is not a writable, contiguous array of float64 of this shape.
+            If `out` is not a writable, contiguous float64 array of this shape.
         """
         if out is None:
             out = np.empty((self.n, self.state_width))
@@ -146,20 +147,20 @@ class BatchSimulation(_core.Batch):
         return out
 
     def set_state(self, rows: npt.ArrayLike) -> None:
-        """Set the states of all vehicles and their times to 0.
+        """Set the states of all vehicles, and reset their times to 0.
 
-        The commands do not change. Failed vehicles are simulated again.
+        The commands do not change. Failed vehicles are active again.
 
         Parameters
         ----------
         rows : array_like (n, 13 + 2 rotors)
-            States as `read_state` returns them.
+            States in the format of `read_state`.
 
         Raises
         ------
         InputError
-            If the shape is wrong, a number is not finite, or a quaternion has no direction.
-            Nothing changes.
+            If the shape is wrong, a number is not finite, or a quaternion is zero. Nothing changes
+            in this case.
         """
         self._take_state(rows)
 
@@ -169,16 +170,16 @@ class BatchSimulation(_core.Batch):
         Parameters
         ----------
         commands : array_like (n, rotors), optional
-            Signed rotor speeds before the division by sim_slow, rad/s, constant over these steps.
-            Default: the present commands.
+            Signed rotor speeds before the division by sim_slow, rad/s, held over these steps.
+            Default: the current commands.
         steps : int, default 1
             Number of steps.
 
         Raises
         ------
         InputError
-            If commands have a wrong shape or are not finite, or if a plugin commands the vehicles.
-            Nothing moves.
+            If the commands have a wrong shape or are not finite, or if a plugin commands the
+            vehicles. Nothing moves in this case.
         """
         super().step(commands, check_whole(steps, "steps", bits=63))
 
@@ -201,28 +202,28 @@ class BatchSimulation(_core.Batch):
         commands : array_like (n, rotors), optional
             As for `step`.
         log : sequence of int, default ()
-            Indices of the vehicles to log, from 0.
+            Indices of the vehicles to log, starting at 0.
         log_every : int, default 1
             Steps between logged rows.
         controller : name, object, or sequence of n of these, optional
-            Controller of all vehicles or of each, instead of `commands`: built-in controllers, as
-            for `Simulation.run`, or one with ``vectorized = True`` for equal vehicles. Vehicles
-            start at time 0; see `reset`.
+            Controller of all vehicles or of each vehicle, instead of `commands`. Either built-in
+            controllers, as for `Simulation.run`, or a controller with ``vectorized = True`` for
+            equal vehicles. The vehicles must be at time 0; see `reset`.
         reference : name, object, or sequence of n of these, optional
-            Reference of all vehicles or of each, as for `Simulation.run`. Built-in controllers
-            require built-in references.
+            Reference of all vehicles or of each vehicle, as for `Simulation.run`. Built-in
+            controllers require built-in references.
 
         Returns
         -------
         list of Log
-            One log for each of these vehicles, bit-identical to that of `Simulation.run`. The log
-            of a failed vehicle ends before the failure.
+            One log for each vehicle in `log`, bit-identical to that of `Simulation.run`. The log of
+            a failed vehicle ends before the failure.
 
         Raises
         ------
         InputError
-            If an argument is wrong, or a vehicle under a controller is not at its start. Nothing
-            moves.
+            If an argument is invalid, or a vehicle with a controller is not in its initial state.
+            Nothing moves in this case.
         """
         if commands is not None and controller is not None:
             raise InputError("a batch takes commands or a controller. Give one of them.")
@@ -253,13 +254,13 @@ class BatchSimulation(_core.Batch):
         return [Log(np.array(rows), {}) for rows in logged]
 
     def _rows_now(self, chosen: Sequence[int]) -> np.ndarray:
-        """Return the present rows of the log, without joint angles."""
+        """Return the current rows of the log, without joint angles."""
         *logged, _ = BatchState.of(self.read_state()[chosen])
         return np.column_stack([self.time[chosen], *logged])
 
     @property
     def failed(self) -> np.ndarray:
-        """Whether each vehicle has failed since its last reset; (n,) of bool."""
+        """Whether each vehicle has failed since its last reset; bool, shape (n,)."""
         return np.array([bool(why) for why in self.failures])
 
     def reset(
@@ -274,12 +275,12 @@ class BatchSimulation(_core.Batch):
         mask : array_like (n,) of bool, optional
             Vehicles to reset. Default: all.
         seed : int or array_like (n,), optional
-            New seeds, as for the constructor. Default: the present seeds.
+            New seeds, as for the constructor. Default: the current seeds.
 
         Raises
         ------
         InputError
-            If an array has a wrong shape or type. Nothing changes.
+            If an array has a wrong shape or type. Nothing changes in this case.
         """
         chosen = np.ones(self.n, bool) if mask is None else mask
         super().reset(chosen, None if seed is None else check_seeds(seed, self.n))

@@ -21,14 +21,14 @@ from .guided_logs import GuidedLogs
 from .simulation import Simulation, make_simulation
 
 ControllerOfAll = Union[ControllerLike, Sequence[ControllerLike]]
-"""A controller of all vehicles, or one for each."""
+"""A controller for all vehicles, or one controller per vehicle."""
 
 ReferenceOfAll = Union[ReferenceLike, ReferenceName, None, Sequence[Union[ReferenceLike, str]]]
-"""A reference of all vehicles, or one for each."""
+"""A reference for all vehicles, or one reference per vehicle."""
 
 
 class Guide(NamedTuple):
-    """Pilot of a vehicle, its simulation, to which the pilot refers, and its logs."""
+    """Pilot of a vehicle, the simulation that it uses, and the logs of its flights."""
 
     pilot: ControllerPilot
     simulation: Simulation
@@ -42,12 +42,13 @@ def make_guides(
     controller: ControllerOfAll,
     reference: ReferenceOfAll,
 ) -> List[Guide]:
-    """Make the guide of each vehicle; equal vehicles with the same controller share one.
+    """Make the guide of each vehicle; equal vehicles with the same controller share a guide.
 
     Raises
     ------
     InputError
-        If a controller or reference is invalid, or their number differs from that of the vehicles.
+        If a controller or reference is invalid, or their number differs from the number of
+        vehicles.
     """
     n = len(vehicles.models)
     controllers = _repeat("controller", controller, n)
@@ -81,10 +82,10 @@ def _make_guide(
     controller: Any,
     reference: Any,
 ) -> Guide:
-    with suppress_warnings():  # the batch has passed them on
+    with suppress_warnings():  # the batch has already issued these warnings
         simulation = make_simulation(engine, model=model, world=world, parameters=tags, dt=dt)
     if isinstance(controller, BuiltInController):
-        controller = controller.copy()  # its reset is for one vehicle
+        controller = controller.copy()  # a reset applies to one vehicle
     pilot = ControllerPilot(controller, simulation, reference)
     if pilot.is_vectorized and list_names(controller):
         raise InputError(
@@ -99,13 +100,13 @@ def _make_guide(
 def follow(
     batch: _core.Batch, guides: Sequence[Guide], steps: int, log: Sequence[int], log_every: int
 ) -> List[np.ndarray]:
-    """Advance a batch under its guides, and return the rows of the vehicles to log.
+    """Advance a batch with the pilots of its guides; return the rows of the logged vehicles.
 
     Raises
     ------
     InputError
         If a controller or reference is neither built in nor vectorized for all vehicles, or a
-        vehicle is not at its start.
+        vehicle is not in its initial state.
     """
     pilots = [guide.pilot for guide in guides]
     if all(pilot.is_built_in for pilot in pilots):

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class BatchState(NamedTuple):
-    """States of the vehicles of a batch, one row per vehicle.
+    """States of the vehicles of a batch; each row belongs to one vehicle.
 
     Attributes
     ----------
@@ -38,12 +38,12 @@ class BatchState(NamedTuple):
 
     @classmethod
     def of(cls, rows: np.ndarray) -> BatchState:
-        """Split rows of states into named columns, without a copy.
+        """Split rows of states into named columns without copying.
 
         Parameters
         ----------
         rows : ndarray (n, 13 + 2 rotors)
-            Rows as `BatchSimulation.read_state` returns them.
+            Rows in the format of `BatchSimulation.read_state`.
         """
         of_frame = [3, 4, 3, 3]
         rotors = (rows.shape[1] - sum(of_frame)) // 2

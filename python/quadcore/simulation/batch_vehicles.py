@@ -14,7 +14,7 @@ from ..support.values import check_whole, format_value
 
 
 class Vehicles(NamedTuple):
-    """Models and tag values of the vehicles, in their order, and their world."""
+    """Model and tag values of each vehicle in order, and their common world."""
 
     models: List[Model]
     tags: List[Dict[str, str]]
@@ -22,11 +22,11 @@ class Vehicles(NamedTuple):
 
 
 MOST = 1_000_000
-"""Maximum number of vehicles in a batch; each needs some kilobytes."""
+"""Maximum number of vehicles in a batch; each vehicle needs some kilobytes."""
 
 
 def check_vehicle_count(n: object) -> int:
-    """Check the number of vehicles."""
+    """Return the number of vehicles; raise `InputError` if it is invalid."""
     count = check_whole(n, "n")
     if not 1 <= count <= MOST:
         raise InputError(f"n is {count}. Give a number of vehicles from 1 to {MOST}.")
@@ -41,12 +41,12 @@ def read_vehicles(
     xacro_args: Optional[Mapping[str, Any]],
     ignore: Sequence[str],
 ) -> Vehicles:
-    """Read the models of n vehicles. Read each distinct model only once.
+    """Read the models of n vehicles; each distinct model is read only once.
 
     Raises
     ------
     InputError
-        If the model, the world or a parameter is wrong, or an array does not have n values.
+        If the model, the world or a parameter is invalid, or an array does not have n values.
     """
     arguments, others = split_xacro_arguments(parameters, xacro_args)
     of_xacro = _split_values(n, {f"{XACRO}.{name}": value for name, value in arguments.items()})
@@ -76,14 +76,14 @@ def _format_argument(value: Any) -> str:
 
 
 def explain_refusal(error: InputError, given: Sequence[Any], n: int) -> InputError:
-    """Add a hint to an error if a list was given where an array has one value per vehicle.
+    """Add a hint to an error if the user passed a list where an array gives one value per vehicle.
 
     Parameters
     ----------
     error
-        Error with the value in its message.
+        Error with a message that contains the value.
     given
-        Mappings of names to values.
+        Mappings of parameter names to values.
     n
         Number of vehicles.
     """
@@ -117,7 +117,7 @@ def _check_rotors(
 
 
 def _split_values(n: int, parameters: Mapping[str, Any]) -> List[Dict[str, Any]]:
-    """Return the values of each vehicle by name."""
+    """Return the parameter values of each vehicle by name."""
     for key, value in parameters.items():
         shape: Tuple[int, ...] = value.shape if isinstance(value, np.ndarray) else ()
         if len(shape) == 1 and len(value) != n:

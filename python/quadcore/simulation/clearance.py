@@ -1,4 +1,4 @@
-"""Distances of a flight from the obstacles of its world."""
+"""Distances between a vehicle and the obstacles of its world during a flight."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ TOUCHING = 1e-4
 
 
 class Encounter(NamedTuple):
-    """Time and place of a row, and the obstacle nearest to it."""
+    """Time and position of a row, and the nearest obstacle."""
 
     time: float
-    """s"""
+    """Time, s."""
     position: Tuple[float, float, float]
-    """Position of the frame in the world, m."""
+    """Position of the frame in world axes, m."""
     obstacle: str
-    """Name of the obstacle's model."""
+    """Model name of the obstacle."""
 
     def __str__(self) -> str:
         x, y, z = self.position
@@ -30,10 +30,10 @@ class Encounter(NamedTuple):
 
 
 class Clearance:
-    """Recorder of the distance of the vehicle's collision shapes from the obstacles.
+    """Recorder of the distance between the vehicle's collision shapes and the obstacles.
 
-    A shape on a rotor counts as the cylinder that it sweeps. The ground plane is no obstacle. A
-    collision between two rows is missed.
+    A shape on a rotor counts as the cylinder that it sweeps. The ground plane is not an obstacle.
+    Collisions between two rows are not detected.
 
     Parameters
     ----------
@@ -48,14 +48,14 @@ class Clearance:
         self._obstacles = world.obstacles
         self._touches = False
         self.minimum = math.nan
-        """Minimum of all rows, m; NaN without obstacles."""
+        """Minimum over all rows, m; NaN without obstacles."""
         self.nearest: Optional[Encounter] = None
-        """Row of the minimum."""
+        """Row with the minimum distance."""
         self.collisions: List[Encounter] = []
         """First row of each collision."""
 
     def receive(self, table: np.ndarray, _: np.ndarray) -> None:
-        """Update the values."""
+        """Update the results with new rows."""
         if not self._obstacles or not len(table):
             return
         distances, nearest = find_clearance(self._model, self._world, table[:, 1:8])
@@ -73,7 +73,7 @@ class Clearance:
         self._touches = bool(touches[-1])
 
     def close(self) -> None:
-        """Do nothing, as no file is open."""
+        """Do nothing, because no file is open."""
 
     def measures(self) -> Dict[str, float]:
         """Return the metrics ``clearance`` and ``collisions``; NaN without obstacles."""

@@ -1,4 +1,4 @@
-"""Open-loop rotor commands from files or arrays."""
+"""Open-loop rotor commands from files and arrays."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ def check_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
     Parameters
     ----------
     commands : ndarray (rows, 1 + n) or path
-        Strictly increasing times in s and signed rotor speeds in rad/s, before the division by
-        sim_slow; or a file for `read_commands`.
+        Strictly increasing times (s) and signed rotor speeds before the division by sim_slow
+        (rad/s), or a file for `read_commands`.
     rotor_count : int
         Number of rotors, n.
 
     Returns
     -------
     ndarray, shape (rows, 1 + n)
-        C-contiguous float64.
+        Table as a C-contiguous float64 array.
 
     Raises
     ------
     InputError
-        If the shape is wrong, a number is not finite, or times do not increase.
+        If the shape is wrong, a number is not finite, or the times do not increase.
     """
     if isinstance(commands, (str, os.PathLike)):
         return read_commands(commands, rotor_count)
@@ -56,13 +56,13 @@ def check_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
 
 
 def read_commands(path: Union[str, os.PathLike[str]], rotor_count: int) -> np.ndarray:
-    """Read a table of commands.
+    """Read a table of commands from a file.
 
     Parameters
     ----------
     path : str or path
-        A ``.csv`` file with the header ``t,w1,...,wn``, or a ``.mat`` file with vectors of these
-        names: strictly increasing times in s, signed rotor speeds in rad/s.
+        ``.csv`` file with the header ``t,w1,...,wn``, ``.mat`` file with vectors of these names, or
+        bag. The times (s) must be strictly increasing, and the rotor speeds (rad/s) are signed.
     rotor_count : int
         Number of rotors, n.
 
@@ -73,8 +73,8 @@ def read_commands(path: Union[str, os.PathLike[str]], rotor_count: int) -> np.nd
     Raises
     ------
     InputError
-        If the file is missing, its columns are wrong, a number is not finite, or times do not
-        increase; the message begins with ``FILE:LINE`` where a line is at fault.
+        If the file is missing, its columns are wrong, a number is not finite, or the times do not
+        increase. The message begins with ``FILE:LINE`` if a line causes the error.
     """
     path = Path(path)
     file = find_format(path, "commands are read from")

@@ -27,7 +27,7 @@ from ..support.user_code import describe_error
 from .reference_pilot import PluginPilot, ReferencePilot
 
 Command = Callable[[float, _core.Odometry], Any]
-"""Function of time, s, and odometry that returns rotor speeds, rad/s."""
+"""Function of time (s) and odometry that returns rotor speeds (rad/s)."""
 
 
 class ControllerPilot(ReferencePilot):
@@ -36,14 +36,14 @@ class ControllerPilot(ReferencePilot):
     Attributes
     ----------
     columns : sequence of str
-        Names of the columns that the log has for the reference, and for the controller's `log`.
+        Names of the log columns of the reference and of the controller's `log`.
     is_vectorized : bool
         Whether the controller commands several vehicles at once.
 
     Raises
     ------
     InputError
-        If controller, rate or reference is not valid, or the model has no odometry.
+        If the controller, its rate or the reference is invalid, or the model has no odometry.
     """
 
     def __init__(
@@ -84,15 +84,15 @@ class ControllerPilot(ReferencePilot):
 
     @property
     def updates(self) -> int:
-        """Number of calls of the controller."""
+        """Number of controller calls."""
         return 0 if self._loop is None else self._loop.calls
 
     @property
     def saturated(self) -> int:
         """Number of calls with a command that the rotors could not follow.
 
-        Built-in controllers report this. A call of another controller counts if a speed reaches the
-        limit of its motor.
+        Built-in controllers report this number. A call of any other controller counts if a speed
+        reaches the limit of its motor.
         """
         return self._reported + (0 if self._loop is None else self._loop.saturated)
 
@@ -103,28 +103,28 @@ class ControllerPilot(ReferencePilot):
 
     @property
     def program(self) -> str:
-        """External program that acted as the controller; "" for other controllers."""
+        """External program that acted as the controller; "" for any other controller."""
         return str(getattr(self._controller, "program_summary", ""))
 
     @property
     def variation(self) -> Tuple[np.ndarray, np.ndarray]:
-        """Total variation over all steps of joint rates (rotors,) and of commands (n,), rad/s."""
+        """Total variation over all steps of joint velocities (rotors,) and commands (n,), rad/s."""
         if self._loop is None:
             return np.empty(0), np.empty(0)
         return self._loop.rate_variation, self._loop.command_variation
 
     @property
     def seconds(self) -> np.ndarray:
-        """Duration of each call, s; empty unless the calls are timed."""
+        """Duration of each call, s; empty unless calls are timed."""
         return np.empty(0) if self._loop is None else self._loop.seconds
 
     @property
     def estimate_errors(self) -> Optional[np.ndarray]:
-        """Errors of its estimates (`EstimateErrors`); None without `note_estimates`."""
+        """Estimation errors of the controller (`EstimateErrors`); None without `note_estimates`."""
         return None if self._estimate_errors is None else self._estimate_errors.rows
 
     def note_estimates(self) -> None:
-        """Compare the controller's estimate with the true state at each call from now on."""
+        """From now on, compare the controller's estimate with the true state at each call."""
         if not self.is_vectorized:
             self._estimate_errors = EstimateErrors(self._controller)
 
@@ -136,7 +136,7 @@ class ControllerPilot(ReferencePilot):
 
     @property
     def built_in(self) -> Tuple[_core.Controller, _core.ReferenceShape]:
-        """Built-in controller after its reset, and built-in reference, in the core."""
+        """Built-in controller (after its reset) and built-in reference as objects of the core."""
         assert isinstance(self._reference, references.Shape)
         return self._controller.core, self._reference.shape
 
@@ -149,7 +149,7 @@ class ControllerPilot(ReferencePilot):
             reset(simulation)
 
     def close(self) -> None:
-        """Close the controller, if it has a method for that."""
+        """Call the `close` method of the controller, if it has one."""
         close = getattr(self._controller, "close", None)
         if close is not None:
             close()
@@ -157,7 +157,7 @@ class ControllerPilot(ReferencePilot):
     def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], int]:
         """Return the function that advances a flight; see `Pilot.begin`.
 
-        A built-in controller on a built-in reference runs in the core, without the interpreter.
+        A built-in controller with a built-in reference runs in the core, without the interpreter.
         """
         loop = self._loop = _core.ControlLoop(flight, self.rate, self.delay, self._timed)
         if self.is_built_in:
@@ -174,13 +174,13 @@ class ControllerPilot(ReferencePilot):
         return lambda steps: loop.control(steps, call, limits, SENSED, sensors)
 
     def _find_compiled(self) -> Optional[CompiledController]:
-        """Return the compiled controller, unless Python notes something after each call."""
+        """Return the compiled controller; None if Python must record values after each call."""
         if self._own_columns.columns or self._estimate_errors is not None:
             return None
         return find_compiled(self._controller)
 
     def _count_reported(self, call: Command) -> Command:
-        """Count what a built-in controller reports, which its speeds alone do not show."""
+        """Count the saturated calls that a built-in controller reports when Python calls it."""
 
         def count(t: float, state: _core.Odometry) -> Any:
             speeds = call(t, state)
@@ -190,9 +190,9 @@ class ControllerPilot(ReferencePilot):
         return count
 
     def _function(self, simulation: Any) -> Command:
-        """Make the function that calls the controller, and its inner loop if there is one."""
+        """Make the function that calls the controller and, for set-points, its inner loop."""
         controller, inner_loop = self._controller, self._inner_loop
-        period = max(1 / self.rate, simulation.dt)  # called once a step at most
+        period = max(1 / self.rate, simulation.dt)  # at most one call per step
         reference = None if self._reference is None else add_future(self._reference)
         width = len(self._limits)
 
@@ -210,7 +210,7 @@ class ControllerPilot(ReferencePilot):
         return self._add_notes(call_vectorized if self.is_vectorized else call, simulation)
 
     def _add_notes(self, call: Command, simulation: Any) -> Command:
-        """Note the controller's own columns and errors of its estimate after each call, if any."""
+        """Record the controller's columns and estimation errors after each call, if required."""
         columns, errors = self._own_columns, self._estimate_errors
         if not columns.columns and errors is None:
             return call
@@ -226,7 +226,7 @@ class ControllerPilot(ReferencePilot):
         return call_and_note
 
     def command_all(self, n: int) -> CommandAll:
-        """Return the function by which a vectorized controller commands n vehicles."""
+        """Return the function with which a vectorized controller commands n vehicles."""
         given = self._reference
         reference = given.shape.at if isinstance(given, references.Shape) else given
         return CommandAll(self._controller, reference, n, self._limits)
@@ -245,7 +245,7 @@ def make_pilot(
     reference: Union[references.ReferenceLike, ReferenceName, None] = None,
     timed: bool = False,
 ) -> Union[ControllerPilot, PluginPilot]:
-    """Make the pilot of a controller; raises as `ControllerPilot` does."""
+    """Make the pilot of a controller; the errors are those of `ControllerPilot`."""
     if isinstance(controller, PluginController):
         return PluginPilot(controller, simulation, reference)
     return ControllerPilot(controller, simulation, reference, timed)
@@ -253,24 +253,25 @@ def make_pilot(
 
 @contextmanager
 def convert_controller_errors(simulation: _core.Simulation) -> Iterator[None]:
-    """Convert a controller's error to a `FlightError` with a one-line message.
+    """Convert an error of a controller to a `FlightError` with a one-line message.
 
     Raises
     ------
     FlightError
-        If the block raises an error from outside quadcore, or an `InputError` after the start.
+        If the block raises an error that is not a quadcore error, or an `InputError` during the
+        flight.
     """
     begin = simulation.time
     try:
         yield
     except InputError as error:
-        # Without a time it is not what flies that is at fault: a full disk, say.
+        # An error without a time is not caused by the flight, but for example by a full disk.
         if simulation.time > begin and hasattr(error, "time"):
             raise _make_failure(simulation, str(error)) from error
         raise
     except (QuadcoreError, MemoryError, KeyboardInterrupt):
         raise
-    except BaseException as error:  # SystemExit, too: a controller ends its flight, not the program
+    except BaseException as error:  # includes SystemExit: it ends the flight, not the program
         raise _make_failure(simulation, f"controller: {describe_error(error)}") from error
 
 

@@ -1,4 +1,4 @@
-"""Engines of the core, and engines that other packages add."""
+"""Engines of the core, and engines that other packages register."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from .simulation import Simulation
 
 EngineName = Literal["gazebo11", "ode", "eigen"]
-"""Names of the core's engines, for type checkers; a test compares them with the core's table."""
+"""Names of the core's engines for type checkers; a test compares them with the core."""
 
 AnyEngineName = Union[EngineName, Literal["lagrange"]]
 """Names of all engines that flight plans and studies accept."""
@@ -24,16 +24,16 @@ STUDY_ENGINE: EngineName = "eigen"
 
 
 class AddedEngine(NamedTuple):
-    """Model that moves the vehicle instead of an engine of the core.
+    """Registered model that moves the vehicle instead of an engine of the core.
 
-    Forces of plugins do not act, so that there are no wrenches.
+    Plugins exert no forces in it, so it has no wrenches.
 
     Attributes
     ----------
     summary : str
         Noun phrase for lists of engines.
     make : callable
-        Function that takes the arguments of `Simulation` except `engine`, and returns a
+        Function that takes the arguments of `Simulation` except `engine` and returns a
         `Simulation`.
     """
 
@@ -45,27 +45,27 @@ _ADDED: Dict[str, AddedEngine] = {}
 
 
 def add_engine(name: str, engine: AddedEngine) -> None:
-    """Add an engine for flight plans, studies and commands."""
+    """Register an engine for flight plans, studies and commands."""
     _ADDED[name] = engine
 
 
 def find_added_engine(name: str) -> Optional[AddedEngine]:
-    """Return an added engine, or None if it belongs to the core or does not exist."""
+    """Return a registered engine; None for an engine of the core or an unknown name."""
     return _ADDED.get(name)
 
 
 def list_engines() -> List[Tuple[str, str]]:
-    """Return name and summary of each engine."""
+    """Return the name and summary of each engine."""
     return [*engines(), *((name, engine.summary) for name, engine in _ADDED.items())]
 
 
 def exerts_wrenches(engine: str) -> bool:
-    """Return whether forces of plugins act in an engine."""
+    """Return whether plugins exert forces in an engine."""
     return engine not in _ADDED
 
 
 def check_wrenches(engine: str) -> None:
-    """Raise `InputError` if wrenches are to be logged in an engine that has none."""
+    """Raise `InputError` if an engine has no wrenches to log."""
     if not exerts_wrenches(engine):
         raise InputError(
             f"Engine {engine} applies no forces of plugins, so that it has no wrenches. "
@@ -74,7 +74,7 @@ def check_wrenches(engine: str) -> None:
 
 
 def check_engine_and_step(engine: EngineName, dt: object) -> Tuple[EngineName, Optional[float]]:
-    """Check the type of an engine name, and a step [s] or None."""
+    """Check the type of an engine name, and convert a step (s), if given, to float."""
     known = ", ".join(name for name, _ in engines())
     if not (isinstance(engine, str) and engine.isprintable()):
         raise InputError(f"engine is {shorten(engine)}. Give one of {known}.")

@@ -22,10 +22,10 @@ from .rows import Rows
 from .simulation import Simulation, check_source, check_start, find_start
 
 CommandsOfFleet = Union[CommandsLike, Mapping[str, Optional[CommandsLike]], None]
-"""Commands of all vehicles, or of each by name."""
+"""Commands of all vehicles, or a mapping of vehicle names to commands."""
 
 ControllerOfFleet = Union[ControllerLike, Mapping[str, Optional[ControllerLike]], None]
-"""Name of a controller for all vehicles, or the controller of each by name."""
+"""Name of a controller for all vehicles, or a mapping of vehicle names to controllers."""
 
 ReferenceOfFleet = Union[
     ReferenceLike,
@@ -33,34 +33,34 @@ ReferenceOfFleet = Union[
     Mapping[str, Union[ReferenceLike, ReferenceName, None]],
     None,
 ]
-"""A reference of all vehicles, or of each by name."""
+"""Reference of all vehicles, or a mapping of vehicle names to references."""
 
 
 class Fleet(_core.Fleet):
     """Simulate several vehicles in one world.
 
     Each vehicle is a `Simulation` with its own model, parameters, seed and spawn. A vehicle that
-    touches no other, and has no plugin that observes others, moves bit-identically as it does
-    alone. In the engines gazebo11 and ode, vehicles collide with each other and with the free
-    bodies of the world, as in Gazebo. In the engine eigen, they pass through each other, of which a
-    warning informs.
+    touches no other vehicle, and has no plugin that observes others, moves bit-identically to a
+    separate simulation. In the engines gazebo11 and ode, vehicles collide with each other and with
+    the free bodies of the world, as in Gazebo. In the engine eigen, vehicles pass through each
+    other, and a warning says so.
 
     Parameters
     ----------
     vehicles : sequence of Simulation, or mapping of str to Simulation
-        Vehicles with the same engine, world and step. A mapping gives their names; otherwise they
-        have the names of their models, numbered if they are equal. All are reset to their initial
-        state. From then on only the fleet advances them.
+        Vehicles with the same engine, world and step. A mapping defines their names. Otherwise they
+        have the names of their models, with a number if several are equal. The fleet resets all
+        vehicles to their initial states. Afterwards only the fleet can advance them.
 
     Attributes
     ----------
     vehicles : dict of str to Simulation
-        Vehicle of each name. The last one is the newest in the world.
+        Vehicles by name, in the order in which they were added to the world.
 
     Raises
     ------
     InputError
-        If engine, world or step differ, or a simulation belongs to a fleet already.
+        If engine, world or step differ, or a simulation already belongs to a fleet.
 
     Warns
     -----
@@ -95,7 +95,7 @@ class Fleet(_core.Fleet):
         reference: ReferenceOfFleet = None,
         on_reference: bool = False,
     ) -> Dict[str, Log]:
-        """Simulate all vehicles for a duration and log the states of each.
+        """Simulate all vehicles for a duration, and log the states of each vehicle.
 
         Any exception that ends the run has the attribute `logs`, which contains the rows so far.
 
@@ -104,22 +104,23 @@ class Fleet(_core.Fleet):
         duration, log_every, progress, wrenches, topics
             As for `Simulation.run`.
         commands, controller, reference
-            As for `Simulation.run`: one for all vehicles, or a mapping of names to that of each
-            vehicle, in which vehicles may be missing.
+            As for `Simulation.run`, for all vehicles; or a mapping of vehicle names to these, in
+            which vehicles may be missing.
         on_reference
-            As for `Simulation.run`. Vehicles without a reference start in their present states.
+            As for `Simulation.run`. Vehicles without a reference start in their current states.
 
         Returns
         -------
         dict of str to Log
-            Log of each vehicle.
+            Log of each vehicle by name.
 
         Raises
         ------
         InputError
-            If an argument is wrong; nothing is simulated. Also if a callback moves a vehicle.
+            If an argument is invalid; in this case nothing is simulated. Also if a callback moves a
+            vehicle.
         FlightError
-            If a flight fails, or a controller returns no valid command.
+            If a flight fails, or a controller returns an invalid command.
         """
         count_steps(duration, self.dt)
         check_log_every(log_every)
@@ -177,7 +178,7 @@ def _collect(rows: Mapping[str, Rows]) -> Dict[str, Log]:
 
 
 def name_vehicles(names: Sequence[str], vehicles: Sequence[Simulation]) -> Dict[str, Simulation]:
-    """Return the vehicles by name; equal names get a number."""
+    """Return the vehicles by name; repeated names get a number."""
     named: Dict[str, Simulation] = {}
     for wanted, vehicle in zip(names, vehicles):
         name, number = wanted, 1
@@ -189,7 +190,7 @@ def name_vehicles(names: Sequence[str], vehicles: Sequence[Simulation]) -> Dict[
 
 
 def _spread(what: str, value: Any, names: Sequence[str]) -> Dict[str, Any]:
-    """Return a value for each vehicle."""
+    """Return the value for each vehicle by name."""
     if not isinstance(value, Mapping):
         return dict.fromkeys(names, value)
     for name in value:

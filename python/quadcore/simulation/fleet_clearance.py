@@ -1,4 +1,4 @@
-"""Distances of the vehicles of a fleet from each other."""
+"""Distances between the vehicles of a fleet."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from .clearance import TOUCHING, Encounter
 
 
 class FleetClearance:
-    """Distances of the collision shapes of vehicles from those of the other vehicles.
+    """Distances between the collision shapes of different vehicles.
 
-    A shape on a rotor counts as the cylinder that it sweeps. A collision between two rows is
-    missed.
+    A shape on a rotor counts as the cylinder that it sweeps. Collisions between two rows are not
+    detected.
 
     Parameters
     ----------
     models : mapping of str to Model
-        Model of each vehicle, by its name.
+        Model of each vehicle by name.
     """
 
     def __init__(self, models: Mapping[str, Model]) -> None:
@@ -29,18 +29,18 @@ class FleetClearance:
         self._pieces: Dict[str, List[np.ndarray]] = {name: [] for name in models}
         self._touching: Dict[Tuple[str, str], bool] = {}
         self.minimum = dict.fromkeys(models, math.inf)
-        """Minimum of all rows of each vehicle, m; infinite if it is alone or without shapes."""
+        """Minimum over all rows of each vehicle, m; infinite without other vehicles or shapes."""
         self.nearest: Dict[str, Encounter] = {}
-        """Row of the minimum of each vehicle, and the other vehicle."""
+        """Row with the minimum distance of each vehicle, and the other vehicle."""
         self.collisions: Dict[str, List[Encounter]] = {name: [] for name in models}
         """First row of each collision of each vehicle, and the other vehicle."""
 
     def recorder(self, name: str) -> Recorder:
-        """Return the recorder of a vehicle's rows."""
+        """Return the recorder for the rows of a vehicle."""
         return _VehicleRows(self, name)
 
     def receive(self, name: str, table: np.ndarray) -> None:
-        """Keep the rows of a vehicle until those of all are there."""
+        """Store the rows of a vehicle until the rows of all vehicles are available."""
         self._pieces[name].append(table[:, :8].copy())
         if any(len(pieces) < len(self._pieces[name]) for pieces in self._pieces.values()):
             return
@@ -52,7 +52,7 @@ class FleetClearance:
                 self._meet(one, other, rows[one][:count], rows[other][:count])
 
     def summarize(self, name: str) -> Dict[str, Any]:
-        """Return the result of a vehicle in plain values, by name; empty without neighbours."""
+        """Return the results of a vehicle as plain values; empty without other vehicles."""
         if name not in self.nearest:
             return {}
         return {
@@ -81,7 +81,7 @@ class FleetClearance:
 
 
 class _VehicleRows:
-    """Recorder of the rows of one vehicle."""
+    """Recorder for the rows of one vehicle."""
 
     wrenches = False
 
@@ -93,7 +93,7 @@ class _VehicleRows:
         self._clearance.receive(self._name, table)
 
     def close(self) -> None:
-        """Do nothing, as no file is open."""
+        """Do nothing, because no file is open."""
 
 
 def _describe(row: Sequence[float], other: str) -> Encounter:

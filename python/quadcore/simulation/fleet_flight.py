@@ -12,8 +12,8 @@ from ..support import interrupts
 from .commands import CommandsLike, check_commands
 from .flight import Pilot, Progress, Receive, check_log_every, close_at_end, count_steps
 
-_PIECE = 0.02  # s; what is flown between two looks at progress and Ctrl-C
-_ROWS = 4096  # of a piece, at most
+_PIECE = 0.02  # s; interval between checks of progress and Ctrl-C
+_ROWS = 4096  # maximum number of rows in a piece
 
 
 @dataclass
@@ -48,7 +48,7 @@ def fly_fleet(
     log_every: int = 1,
     progress: Optional[Progress] = None,
 ) -> None:
-    """Simulate all vehicles of a fleet for a duration, and pass on the rows of each.
+    """Simulate all vehicles of a fleet for a duration, and pass on the rows of each vehicle.
 
     Parameters
     ----------
@@ -60,8 +60,8 @@ def fly_fleet(
     Raises
     ------
     InputError, FlightError
-        As for `flight.fly`. If the commands of a vehicle are at fault, the attribute `vehicle` is
-        its name.
+        As for `flight.fly`. If the commands of a vehicle cause the error, its attribute `vehicle`
+        is the name of the vehicle.
     """
     total = count_steps(duration, fleet.dt)
     log_every = check_log_every(log_every)
@@ -82,7 +82,7 @@ def fly_fleet(
 
 
 class _Seat:
-    """Flight of a vehicle in the core, with the source of its commands."""
+    """Flight of a vehicle in the core, and the source of its commands."""
 
     def __init__(self, flight: FlightOfVehicle, log_every: int) -> None:
         simulation, pilot = flight.simulation, flight.pilot
@@ -96,7 +96,7 @@ class _Seat:
         self._flight, self._pilot = flight, pilot
 
     def prepare(self, steps: int) -> int:
-        """Publish the command that is due; returns the number of steps until the next."""
+        """Publish the command that is due, and return the steps until the next command."""
         try:
             return self._prepare(steps)
         except Exception as error:
@@ -112,7 +112,7 @@ class _Seat:
         except BaseException as error:
             self._name(error)
             raise
-        finally:  # the states are valid even without the columns of the pilot
+        finally:  # the states are valid even if the columns of the pilot are not
             self._flight.receive(table, wrenches)
 
     def _name(self, error: BaseException) -> None:
@@ -128,7 +128,7 @@ def _advance(
     most: int,
     progress: Optional[Progress],
 ) -> None:
-    """Simulate `total` steps, and hand rows over every few hundredths of a second."""
+    """Simulate `total` steps, and pass on the rows every few hundredths of a second."""
     flights = [seat.core for seat in seats]
     done, rows_at, reported = 0, 0, time.perf_counter()
     while done < total:

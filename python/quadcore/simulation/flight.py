@@ -1,4 +1,4 @@
-"""Loop of a flight, which passes the logged rows on in pieces."""
+"""Loop of a flight, which passes on the logged rows in pieces."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 Receive = Callable[[np.ndarray, np.ndarray], None]
 Progress = Callable[[int, int], None]
 
-_LONGEST = 1e9  # s
-_PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
-_GROWTH = 256  # of a piece over the one before, at most
-_PACED = 0.04  # s of wall-clock time; longest piece of a flight at a pace
-_ROWS = 4096  # of a piece, at most; it stays in the cache until its rows are where they belong
+_LONGEST = 1e9  # s; maximum duration
+_PIECE = 0.02  # s; minimum interval between checks of progress and Ctrl-C
+_GROWTH = 256  # maximum growth of a piece over the previous one
+_PACED = 0.04  # s; maximum wall-clock duration of a piece of a paced flight
+_ROWS = 4096  # maximum number of rows in a piece, so that a piece stays in the cache
 
 
 class Pilot:
@@ -37,35 +37,35 @@ class Pilot:
     rate: float
     """Calls of `speeds` per simulated second, 1/s; at most one call per step."""
     delay: float
-    """Time from a call until its command acts, s; the command of the first call acts at once."""
+    """Actuation delay, s; the command of the first call acts at once."""
 
     columns: Sequence[str] = ()
     """Names of the columns ``TOPIC.FIELD`` that the pilot adds to the log."""
     moves: bool = False
-    """Whether the pilot moves the vehicle, which other callbacks must not do."""
+    """Whether the pilot itself moves the vehicle; other callbacks must not do so."""
 
     def reset(self, simulation: Any) -> None:
-        """Prepare for a flight; the simulation is at its first step."""
+        """Prepare for a flight; the simulation is in its initial state."""
 
     def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], int]:
-        """Return the function that advances a flight by a number of steps, and returns it.
+        """Return a function that advances a flight by a number of steps, and returns that number.
 
         For a vehicle of a fleet, the function publishes the command that is due, and returns the
-        number of steps until the next one.
+        number of steps until the next command.
         """
         loop = _core.ControlLoop(flight, self.rate, self.delay)
         limits = np.full(simulation.command_width, np.inf)
         return lambda steps: loop.advance(steps, lambda: self.speeds(simulation), limits)
 
     def speeds(self, simulation: Any) -> npt.ArrayLike:
-        """Return the command until the next call, rad/s."""
+        """Return the command that holds until the next call, rad/s."""
         raise NotImplementedError
 
     def close(self) -> None:
-        """Release what `reset` acquired; called once after every `reset`."""
+        """Release what `reset` acquired; this is called once after every `reset`."""
 
     def fill_columns(self, table: np.ndarray) -> None:
-        """Fill the columns of the pilot, which are the last ones of rows of a log."""
+        """Fill the columns of the pilot, which are the last columns of the rows."""
 
 
 def fly(
@@ -80,33 +80,34 @@ def fly(
     topics: Sequence[str] = (),
     pace: float = 0.0,
 ) -> None:
-    """Simulate for a duration, and pass logged rows on every few hundredths of a second.
+    """Simulate for a duration, and pass on the logged rows every few hundredths of a second.
 
     Parameters
     ----------
     duration, commands, log_every, progress
         As for `Simulation.run`.
     receive
-        Called as receive(table, wrenches) with new arrays of shape (rows, columns) and
+        Function called as receive(table, wrenches) with new arrays of shape (rows, columns) and
         (rows, terms, 6). The columns are those of the state, the topics and the pilot. The first
-        call contains the present state. The last call precedes any exception; interrupts wait.
+        call contains the current state. If an exception occurs, the last call precedes it.
+        Interrupts wait for the call.
     wrenches
-        Whether to log wrenches. Otherwise their array has no rows.
+        Whether to log wrenches. Otherwise the array of wrenches has no rows.
     pilot
         Source of the commands, instead of a table.
     topics
         Names of topics to log; their columns follow those of the state.
     pace
-        Simulated seconds per second of wall-clock time, at most; 0: as fast as possible.
+        Maximum simulated seconds per second of wall-clock time. 0: as fast as possible.
 
     Raises
     ------
     InputError
-        If an argument is wrong or the simulation already runs; nothing is simulated. Also if a
-        callback moves the simulation or returns invalid values, which ends the flight; the
-        attribute `time` is then the time of the end, s.
+        If an argument is invalid or the simulation is already running; in this case nothing is
+        simulated. Also if a callback moves the simulation or returns invalid values, which ends the
+        flight. The attribute `time` is then the time of the end, s.
     FlightError
-        If the flight fails, or the pilot returns no valid command.
+        If the flight fails, or the pilot returns an invalid command.
     """
     total, log_every = check_run(simulation, duration, log_every, wrenches)
     table = None if commands is None else check_commands(commands, simulation.command_width)
@@ -115,7 +116,7 @@ def fly(
     run = nullcontext() if moves else _core.Run(simulation)
     with nullcontext() if pilot is None else close_at_end(pilot):
         if pilot is not None:
-            pilot.reset(simulation)  # which may yet put the vehicle where it is to begin
+            pilot.reset(simulation)  # reset may still change the initial state
         with run:
             to_fill = 0 if pilot is None else len(pilot.columns)
             flight = _core.Flight(simulation, table, log_every, wrenches, topics, to_fill)
@@ -138,7 +139,7 @@ def check_run(
 
 
 class _Pace:
-    """Clock that keeps a flight from running ahead of wall-clock time."""
+    """Clock that limits a flight to the pace of wall-clock time."""
 
     def __init__(self, pace: float, dt: float) -> None:
         self._seconds_per_step = dt / pace if pace else 0.0
@@ -148,7 +149,7 @@ class _Pace:
         return self._seconds_per_step > 0
 
     def wait(self, steps: int) -> None:
-        """Wait until a number of steps is due."""
+        """Wait until the given number of steps is due."""
         ahead = self._began + steps * self._seconds_per_step - time.monotonic()
         if self._seconds_per_step and ahead > 0:
             time.sleep(ahead)
@@ -156,14 +157,14 @@ class _Pace:
 
 @contextmanager
 def close_at_end(pilot: Pilot) -> Iterator[None]:
-    """Close the pilot after the block, however it ends; interrupts wait until that is done."""
+    """Close the pilot after the block, even after an error; interrupts wait until it is closed."""
     try:
         yield
     except BaseException:
         with interrupts.hold_signals():
             try:
                 pilot.close()
-            except Exception as error:  # the reason why the flight ended matters more
+            except Exception as error:  # the reason for the end of the flight matters more
                 warn(f"controller: its close() failed: {describe_error(error)}")
         raise
     with interrupts.hold_signals():
@@ -180,7 +181,7 @@ def _advance(
     pilot: Optional[Pilot],
     pace: _Pace,
 ) -> None:
-    """Simulate `total` steps in pieces, and pass on the rows of at most `most` steps at once."""
+    """Simulate `total` steps in pieces, and pass on the rows of at most `most` steps at a time."""
     advance = flight.advance if pilot is None else pilot.begin(simulation, flight)
 
     def hand_over() -> None:
@@ -189,7 +190,7 @@ def _advance(
             try:
                 if pilot is not None:
                     _call_with_time(simulation, pilot.fill_columns, table)
-            finally:  # the states are valid even without the columns of the pilot
+            finally:  # the states are valid even if the columns of the pilot are not
                 receive(table, wrenches)
 
     done, steps, last_report = 0, 1, 0.0
@@ -242,7 +243,7 @@ def list_columns(
 
 
 def count_steps(duration: float, dt: float) -> int:
-    """Count the steps that end within a duration; raises `InputError` if it is not valid."""
+    """Count the steps that end within a duration; raise `InputError` if it is invalid."""
     if not (isinstance(duration, Real) and 0 <= duration <= _LONGEST):
         raise _core.InputError(
             f"duration is {shorten(duration)}. Give seconds, from 0 to {_LONGEST:g}."
@@ -256,7 +257,7 @@ def count_steps(duration: float, dt: float) -> int:
 
 
 def check_log_every(log_every: object) -> int:
-    """Return the number of steps between rows; raises `InputError` if it is not valid."""
+    """Return the number of steps between rows; raise `InputError` if it is invalid."""
     is_whole = isinstance(log_every, (int, np.integer)) and not isinstance(log_every, bool)
     if not is_whole or not 1 <= log_every < 2**63:  # type: ignore[operator]
         raise _core.InputError(f"log_every is {shorten(log_every)}. Give a whole number >= 1.")
@@ -264,7 +265,7 @@ def check_log_every(log_every: object) -> int:
 
 
 def check_log_length(duration: float, dt: float, log_every: int) -> None:
-    """Raise `InputError` if a log would contain the initial state only."""
+    """Raise `InputError` if a log would contain only the initial state."""
     steps = count_steps(duration, dt)
     if check_log_every(log_every) > steps:
         raise _core.InputError(

@@ -1,4 +1,4 @@
-"""Complete description of a flight, for any process or machine."""
+"""Complete description of a flight, which any process or machine can simulate."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ from .state import State
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-_VERSION = 1  # of the contents of a fingerprint
+_VERSION = 1  # version of the contents of a fingerprint
 
 
 class _Others(TypedDict, total=False):
-    """Keyword arguments that `FlightPlan.of` takes as they are."""
+    """Keyword arguments that `FlightPlan.of` passes on unchanged."""
 
     engine: AnyEngineName
     dt: Optional[float]
@@ -67,24 +67,24 @@ class _Others(TypedDict, total=False):
 
 @dataclass(frozen=True, eq=False)
 class FlightPlan:
-    """Complete description of a flight: vehicle, world, start and commands.
+    """Complete description of a flight: vehicle, world, initial state and commands.
 
-    A plan contains documents and numbers but no paths. It can be pickled; its flights are
+    A plan contains documents and numbers but no paths. It can be pickled, and its flights are
     bit-identical in every process and on every machine. `FlightPlan.of` makes a plan from files and
-    names; `dataclasses.replace` makes a plan with other attributes.
+    names. `dataclasses.replace` makes a plan with changed attributes.
 
     Attributes
     ----------
     model, world
-        Model and World, as `read_model` and `read_world` return them.
+        Model and world, as returned by `read_model` and `read_world`.
     engine, dt, seed
         As for `Simulation`.
     parameters : mapping of str to str
-        Values by "PLUGIN.TAG". Values such as "LINK.mass" become part of the model.
+        Values by "PLUGIN.TAG". Values of links, such as "LINK.mass", become part of the model.
     spawn : tuple of 6 floats
         x, y, z (m), roll, pitch, yaw (rad) of the frame link in the world.
     rotor_velocity : tuple of float, optional
-        Initial velocities of the rotor joints, rad/s. Default: at rest.
+        Initial velocities of the rotor joints, rad/s. Default: zero.
     duration : float
         Duration, s; infinite if the caller decides when the flight ends.
     commands : ndarray (rows, 1 + n), optional
@@ -116,7 +116,7 @@ class FlightPlan:
     topics: Tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Convert the attributes to the form in which plans are compared."""
+        """Convert the attributes to a canonical form for comparisons."""
         model, parameters = apply_link_values(
             self.model, {key: format_value(value) for key, value in self.parameters.items()}
         )
@@ -158,20 +158,20 @@ class FlightPlan:
         model, world, xacro_args, ignore, parameters, spawn, seed
             As for `Simulation`.
         commands
-            As for `Simulation.run`; a file is read at once.
+            As for `Simulation.run`. A file is read immediately.
         scenario
-            Disturbances and faults: a file, or the name of a built-in scenario.
+            Disturbances and faults: a scenario file, or the name of a built-in scenario.
         wind
             Velocity of a constant wind, world axes, m/s.
         at
-            As for `read_world`.
+            Location on Earth, as for `read_world`.
         **others
             Other attributes of the plan.
 
         Raises
         ------
         InputError
-            If the model, the world, the commands, the scenario or an argument is wrong.
+            If the model, the world, the commands, the scenario or an argument is invalid.
         """
         arguments, given = split_xacro_arguments(parameters, xacro_args)
         readings = read_both(model, world, arguments, ignore, at)
@@ -188,7 +188,7 @@ class FlightPlan:
 
     @property
     def step(self) -> float:
-        """Step of the flight, s: `dt`, or else that of the world."""
+        """Step of the flight, s: `dt`, or by default the step of the world."""
         return self.world.max_step_size if self.dt is None else self.dt
 
     def with_scenario(self, scenario: Union[str, Path, Scenario, None]) -> FlightPlan:
@@ -197,12 +197,12 @@ class FlightPlan:
         Parameters
         ----------
         scenario : path, str or Scenario, optional
-            File, name of a built-in scenario, or scenario. Default: none.
+            Scenario, file, or name of a built-in scenario. Default: none.
 
         Raises
         ------
         InputError
-            If the scenario is wrong; the message begins with ``FILE:LINE``.
+            If the scenario is invalid; the message begins with ``FILE:LINE``.
 
         Warns
         -----
@@ -242,23 +242,23 @@ class FlightPlan:
         Parameters
         ----------
         commands : ndarray (rows, 1 + n) or path
-            As for `Simulation.run`; a file is read at once.
+            As for `Simulation.run`. A file is read immediately.
 
         Raises
         ------
         InputError
-            If the commands or other attributes of the plan are wrong.
+            If the commands or other attributes of the plan are invalid.
         """
         vehicle = make_simulation(**self._vehicle())
         return replace(self, commands=check_commands(commands, vehicle.command_width))
 
     def simulation(self, placed: Optional[List[State]] = None) -> Simulation:
-        """Make the simulation in its initial state; raises and warns as `Simulation` does.
+        """Make the simulation in its initial state; errors and warnings are those of `Simulation`.
 
         Parameters
         ----------
         placed : list of State, optional
-            List to which the states are added that `set_state` sets.
+            List to which the function adds the states passed to `set_state`.
         """
         simulation = make_simulation(**self._vehicle())
         for state in self.list_placements(simulation):
@@ -273,7 +273,7 @@ class FlightPlan:
         Parameters
         ----------
         simulation : Simulation
-            Simulation of this plan, in the state that was yielded before.
+            Simulation of this plan, in the state that was yielded last.
         """
         if self.rotor_velocity is not None:
             state = simulation.state.copy()
@@ -284,7 +284,7 @@ class FlightPlan:
             yield start
 
     def find_start(self, simulation: Simulation) -> Optional[State]:
-        """Return the state on the reference in which a simulation of this plan begins, if any.
+        """Return the initial state on the reference, or None if the flight starts elsewhere.
 
         Parameters
         ----------
@@ -305,12 +305,12 @@ class FlightPlan:
     def pilot(
         self, simulation: Simulation, timed: bool = False
     ) -> Union[ControllerPilot, PluginPilot, None]:
-        """Make the pilot that calls the controller, if any; raises as `Simulation.run` does.
+        """Make the pilot of the controller, if any; the errors are those of `Simulation.run`.
 
         Parameters
         ----------
         simulation : Simulation
-            Simulation of this plan, as `simulation()` makes it.
+            Simulation of this plan, as returned by `simulation()`.
         timed : bool
             Whether to measure the duration of each call.
         """
@@ -319,27 +319,27 @@ class FlightPlan:
         return make_pilot(self.controller, simulation, self.reference, timed)
 
     def fly(self, progress: Optional[Progress] = None) -> Log:
-        """Simulate the flight; raises and warns as `Simulation` and `Simulation.run` do.
+        """Simulate the flight; errors and warnings are those of `Simulation` and `Simulation.run`.
 
         Parameters
         ----------
         progress : callable, optional
-            Called as progress(steps_done, steps_total) every few hundredths of a second.
+            Function called as progress(steps_done, steps_total) every few hundredths of a second.
 
         Returns
         -------
         Log
-            Log of the whole flight, from the initial state on.
+            Log of the whole flight, including the initial state.
         """
         return self.fly_with(self.simulation(), progress)
 
     def fly_with(self, simulation: Simulation, progress: Optional[Progress] = None) -> Log:
-        """Simulate the flight with an existing simulation, otherwise as `fly`.
+        """Simulate the flight as `fly` does, but with an existing simulation.
 
         Parameters
         ----------
         simulation : Simulation
-            Simulation of this plan, as `simulation()` makes it.
+            Simulation of this plan, as returned by `simulation()`.
         progress : callable, optional
             As for `fly`.
         """
@@ -355,20 +355,20 @@ class FlightPlan:
         )
 
     def fingerprint(self) -> str:
-        """Return a digest of everything that the flight depends on, equal in every process.
+        """Return a digest of everything that affects the flight; it is equal in every process.
 
-        Comments in documents count; names and folders of files do not. The digest does not cover
-        the libraries of plugins.
+        Comments in documents affect the digest; names and folders of files do not. The digest does
+        not cover plugin libraries.
 
         Returns
         -------
         str
-            Hexadecimal digits.
+            Digest in hexadecimal.
 
         Raises
         ------
         InputError
-            If the controller or the reference is your own code.
+            If the controller or the reference is user-defined.
         """
         text = json.dumps(self._describe(), sort_keys=True, allow_nan=True)
         return hashlib.sha256(text.encode()).hexdigest()
@@ -386,12 +386,12 @@ class FlightPlan:
             values[name] = [values[name].document.text, values[name].ignored_elements.ignored]
         for name, own in (("controller", BuiltInController), ("reference", references.Shape)):
             if values[name] is None:
-                del values[name]  # as plans of before had none
+                del values[name]  # for compatibility with earlier plans
             elif not isinstance(values[name], own):
                 raise _core.InputError(f"a plan whose {name} is your own has no fingerprint")
             else:
                 values[name] = values[name].to_dict()
         values["dt"] = self.step
-        if self.commands is not None:  # 10 and 10.0 are the same
+        if self.commands is not None:  # 10 and 10.0 must give the same digest
             values["commands"] = np.asarray(self.commands, dtype=float).tolist()
         return {"version": _VERSION, **values}

@@ -1,4 +1,4 @@
-"""Logs of flights that a batch simulates under controllers."""
+"""Logs of flights that a batch simulates with controllers."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .trajectory import per_command
 
 
 class GuidedLogs:
-    """Logs of flights of one vehicle under one pilot, with rows at the same times.
+    """Logs of the flights of one vehicle with one pilot, with rows at the same times.
 
     Parameters
     ----------
     simulation
         Simulation of the vehicle.
     pilot
-        Pilot with the reference.
+        Pilot that has the reference.
     """
 
     def __init__(self, simulation: Simulation, pilot: ControllerPilot) -> None:
@@ -29,7 +29,7 @@ class GuidedLogs:
         self._wanted = np.empty((0, 0))
 
     def make(self, table: np.ndarray) -> Log:
-        """Make the log of a flight from the rows of its state, which it keeps."""
+        """Make the log of a flight from the rows of its state; the log refers to these rows."""
         topics: Topics = {}
         if self._pilot.columns:
             if len(self._wanted) < len(table):

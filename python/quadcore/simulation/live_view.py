@@ -1,4 +1,4 @@
-"""Rows of a flight that goes on, for a page that shows it."""
+"""Rows of a running flight, for a page that shows it."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from .log import Log
 from .simulation import Simulation
 from .trajectory import find_speed_limit
 
-_RATE = 60.0  # rows per second of the flight, at most
+_RATE = 60.0  # maximum number of rows per simulated second
 
 
 class LiveView:
-    """Recorder that sends the rows of one flight to a page on this machine.
+    """Recorder that sends the rows of a flight to a page on this machine.
 
     Parameters
     ----------
     simulation : Simulation
         Vehicle and world to draw.
     columns : sequence of str
-        Names of the columns of the rows, as from `flight.list_columns`.
+        Names of the columns, as returned by `flight.list_columns`.
     model : Model, optional
-        Model that was read; default: that of the simulation.
+        Model to draw (default: that of the simulation).
     log_every : int
         Steps between two rows.
     every : int, optional
-        Rows per row that is sent; default: as many as leave 60 rows per simulated second.
+        Number of rows per sent row (default: such that 60 rows per simulated second are sent).
     camera : str
-        Camera at the start.
+        Initial camera.
     """
 
     wrenches = False
@@ -54,7 +54,7 @@ class LiveView:
         self._columns = list(columns)
         self._every = every or max(1, round(1 / (_RATE * simulation.dt * log_every)))
         self._seen = 0
-        self._last: Optional[np.ndarray] = None  # a row that the page does not have yet
+        self._last: Optional[np.ndarray] = None  # a row that was not sent yet
         vehicle = read_vehicle(model or simulation.model)
         empty = Log.of_rows(np.zeros((0, len(self._columns))), self._columns, {})
         self.page = PageServer(
@@ -70,7 +70,7 @@ class LiveView:
         )
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Send the rows of a piece that the page needs."""
+        """Send every `every`-th row of a piece."""
         picked = table[-self._seen % self._every :: self._every]
         self._seen += len(table)
         if len(picked):
@@ -79,14 +79,14 @@ class LiveView:
             self._last = table[-1:].copy() if (self._seen - 1) % self._every else None
 
     def close(self) -> None:
-        """Send the page the last row and the end of the flight."""
+        """Send the last row and the end of the flight."""
         if self._last is not None:
             self.page.append(make_rows(self._last, self._columns))
         self.page.end()
 
 
 def make_rows(table: np.ndarray, columns: Sequence[str]) -> List[List[Optional[float]]]:
-    """Return rows of a log with the columns that the page reads, None if not finite."""
+    """Convert rows of a log to the columns of the page; values that are not finite become None."""
     shown = list_columns(Log.of_rows(table, columns, {}))
     rows = np.hstack([values for values, _ in shown.values()]).tolist()
     return [[value if math.isfinite(value) else None for value in row] for row in rows]

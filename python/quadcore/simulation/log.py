@@ -26,7 +26,7 @@ _READ = "logs are read from"
 
 
 class Log(Trajectory):
-    """Logged states of a flight, with methods to write and plot them.
+    """Logged states of a flight, with methods that write and plot them.
 
     ``log["x"]`` returns a column (rows,) by its name in the CSV file. The parameters are those of
     `Trajectory`.
@@ -41,14 +41,14 @@ class Log(Trajectory):
         ignored: Sequence[str] = (),
         title: str = "",
     ) -> Log:
-        """Make a log from rows that contain topics as well.
+        """Make a log from rows that also contain topics.
 
         Parameters
         ----------
         rows : ndarray (rows, columns)
             One row per logged step.
         columns : sequence of str
-            Names of the columns: those of the state, then ``TOPIC.FIELD``.
+            Names of the columns: those of the state, then ``TOPIC.FIELD`` for topics.
         wrenches, ignored, title
             As for `Trajectory`.
         """
@@ -57,23 +57,23 @@ class Log(Trajectory):
 
     @classmethod
     def of_file(cls, path: PathLike, mapping: Union[PathLike, None] = None) -> Log:
-        """Read a file that `to_file` wrote, bit-identically, or a recording of a real flight.
+        """Read a file written by `to_file`, bit-identically, or a recording of a real flight.
 
         Parameters
         ----------
         path : str or path
-            ``.csv``, ``.mat`` or ``.bag`` file of quadcore, or the folder of a ROS 2 bag. Others
-            are a ULog, a Crazyflie micro-SD log, a blackbox log, a CSV file or a bag with other
-            columns; also compressed by gzip.
+            ``.csv``, ``.mat`` or ``.bag`` file written by quadcore, or the folder of a ROS 2 bag.
+            Recordings are a ULog, a Crazyflie micro-SD log, a blackbox log, or a CSV file or a bag
+            with other columns. They may be compressed by gzip.
         mapping : str or path, optional
             Description of the columns of a recording: a YAML file or a built-in name. Default: the
-            built-in mapping that fits.
+            built-in mapping that matches.
 
         Raises
         ------
         InputError
-            If the format is unknown, the file cannot be read, or it contains no log; the message
-            begins with the file and, for text, the line.
+            If the format is unknown, the file cannot be read, or it contains no log. The message
+            begins with the file and, for text files, the line.
         """
         with LOCK:
             from ..formats.recordings import is_recording, make_log_rows, read_recording
@@ -99,7 +99,7 @@ class Log(Trajectory):
         return named
 
     def to_dataframe(self) -> Any:
-        """Return a pandas DataFrame of every column of `to_dict`, indexed by the time ``t`` [s].
+        """Return a pandas DataFrame of the columns of `to_dict`, indexed by the time ``t`` (s).
 
         Raises
         ------
@@ -139,7 +139,7 @@ class Log(Trajectory):
         return f"<Log{flown}: {len(self)} rows{span}{more}>"
 
     def _repr_html_(self) -> str:
-        from ..report.html_table import html_title  # these are slow to import
+        from ..report.html_table import html_title  # slow to import
 
         if len(self) == 0:
             return html_title(self)
@@ -153,21 +153,21 @@ class Log(Trajectory):
         )
 
     def to_csv(self, path: PathLike) -> None:
-        """Write a CSV file with the fewest digits that restore every bit.
+        """Write a CSV file with the fewest digits that preserve every bit.
 
         The columns of `table` come first. Columns ``TOPIC.FIELD`` of topics follow, then six
-        columns of each wrench, ``wrench_NAME.fx`` to ``wrench_NAME.tz``. A comment below the
-        header lists `ignored`, if it is not empty.
+        columns for each wrench, ``wrench_NAME.fx`` to ``wrench_NAME.tz``. If `ignored` is not
+        empty, a comment below the header lists it.
 
         Parameters
         ----------
         path : str or path
-            File that ends in ``.csv``.
+            Path that ends in ``.csv``.
 
         Raises
         ------
         InputError
-            If the suffix is wrong, or the file cannot be written; no partial file remains.
+            If the suffix is wrong, or the file cannot be written. No partial file remains.
         """
         self._check_suffix(path, ".csv")
         self.to_file(path)
@@ -175,43 +175,44 @@ class Log(Trajectory):
     def to_mat(self, path: PathLike, layout: str = "vectors") -> None:
         """Write a MATLAB file with each column as a vector.
 
-        Wrenches are matrices ``wrench_NAME``, topics are structs ``topic_NAME`` with one vector per
-        field. The cell array ``ignored`` contains `ignored`, if it is not empty.
+        Wrenches are matrices ``wrench_NAME``, and topics are structs ``topic_NAME`` with one vector
+        per field. If `ignored` is not empty, the cell array ``ignored`` contains it.
 
         Parameters
         ----------
         path : str or path
-            File that ends in ``.mat``.
+            Path that ends in ``.mat``.
         layout : {"vectors", "struct", "matrix", "signals"}, default "vectors"
             "struct", "matrix" and "signals" write one variable ``log``: a struct of the vectors, a
-            matrix next to the names of its ``columns``, or time and signals as in Simulink.
+            matrix with the names of its ``columns``, or time and signals as in Simulink.
 
         Raises
         ------
         InputError
-            If suffix or layout is wrong, or the file cannot be written; no partial file remains.
+            If the suffix or the layout is wrong, or the file cannot be written. No partial file
+            remains.
         """
         self._check_suffix(path, ".mat")
         mat.write_log(_check_path(path), *self._parts(), layout)
 
     def to_file(self, path: PathLike) -> None:
-        """Write a ``.csv``, ``.mat`` or ``.bag`` file, or a ROS 2 bag ``.ros2``.
+        """Write a ``.csv``, ``.mat`` or ``.bag`` file, or a ROS 2 bag (``.ros2``).
 
         Parameters
         ----------
         path : str or path
-            File, or for ``.ros2`` a new folder; its suffix selects the format.
+            Path of the file, or of a new folder for ``.ros2``. The suffix selects the format.
 
         Raises
         ------
         InputError
-            If the suffix is unknown, or the file cannot be written; no partial file remains.
+            If the suffix is unknown, or the file cannot be written. No partial file remains.
         """
         file = _check_path(path)
         find_format(file, _WRITTEN).write_log(file, *self._parts())
 
     def _parts(self) -> Tuple[List[str], np.ndarray, Mapping[str, np.ndarray], List[str]]:
-        """Return the contents of files: columns, table, wrenches and `ignored`."""
+        """Return the contents of a file: columns, table, wrenches and `ignored`."""
         columns, table = list(self.columns), self.table
         if self.topics:
             columns += [f"{topic}.{field}" for topic in self.topics for field in self.topics[topic]]
@@ -225,19 +226,19 @@ class Log(Trajectory):
         Parameters
         ----------
         directory : str or path
-            Folder of the files; a missing folder is created.
+            Folder for the files. It is created if it does not exist.
         formats : sequence of str
-            Some of png, svg, pdf (default: those of the command line, else png).
+            Some of "png", "svg" and "pdf" (default: the formats of the command line, else "png").
 
         Returns
         -------
         list of Path
-            Files that were written.
+            Paths of the written files.
 
         Raises
         ------
         InputError
-            If a file cannot be written, or there is no such format.
+            If a file cannot be written, or a format does not exist.
         """
         folder = _check_path(directory, "directory")
         chosen = check_formats(formats) if formats else get_formats()
@@ -259,7 +260,7 @@ def _check_path(path: PathLike, argument: str = "path") -> Path:
 
 
 def check_log_path(path: PathLike) -> None:
-    """Raise `InputError` now if `Log.to_file` could not write `path` later."""
+    """Raise `InputError` if `Log.to_file` cannot write to `path`."""
     find_format(Path(path), _WRITTEN)
     check_writable(Path(path))
 
@@ -267,7 +268,7 @@ def check_log_path(path: PathLike) -> None:
 def make_log_file(
     path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
 ) -> LogFile:
-    """Make a recorder for the format that the suffix of a file selects.
+    """Make a recorder for the format that the suffix of the path selects.
 
     Parameters
     ----------
@@ -276,8 +277,8 @@ def make_log_file(
     columns
         Columns of the rows.
     terms
-        Names of the logged wrenches.
+        Names of the wrenches to log.
     ignored
-        Ignored parts of model and world.
+        Ignored parts of the model and the world.
     """
     return find_format(path, _WRITTEN).log_file(path, columns, terms, ignored)

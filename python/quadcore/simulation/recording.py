@@ -1,4 +1,4 @@
-"""Recorders that receive the rows of a flight: for summaries, plots and files."""
+"""Recorders that receive the rows of a flight, for summaries, plots and files."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from .simulation import Simulation
 
 TAIL = 10.0
-"""Length of the final part of a flight that `TrackingError.final` covers, s."""
+"""Duration of the final part of a flight that `TrackingError.final` covers, s."""
 
-_DRAWN = 20_000  # rows, more than a plot can show
+_DRAWN = 20_000  # rows; a plot cannot show more
 
 
 class DecimatedRows:
-    """Recorder of enough rows for plots: every row, or every N-th of a long flight."""
+    """Recorder of the rows to plot: all rows, or every N-th row of a long flight."""
 
     def __init__(self, rows: int, columns: Sequence[str], terms: Sequence[str]) -> None:
         self.every = -(-rows // _DRAWN)
@@ -46,10 +46,10 @@ class DecimatedRows:
         self._last = [] if is_picked else [rows[-1:].copy() for rows in (table, wrenches)]
 
     def close(self) -> None:
-        """Do nothing, as no file is open."""
+        """Do nothing, because no file is open."""
 
     def log(self) -> Log:
-        """Return the picked rows; the title states N if it is not 1."""
+        """Return the picked rows as a log; its title contains N unless all rows are picked."""
         title = f"every {_format_ordinal(self.every)} row" if self.every > 1 else ""
         table, wrenches = (
             np.concatenate([*pieces, *self._last[i : i + 1]])
@@ -62,14 +62,14 @@ class DecimatedRows:
 
 
 def _format_ordinal(number: int) -> str:
-    """Write 1st, 2nd, 3rd, 4th and so on."""
+    """Format an ordinal number: 1st, 2nd, 3rd, 4th and so on."""
     suffixes = {1: "st", 2: "nd", 3: "rd"}
     is_teen = 10 < number % 100 < 20
     return f"{number}{'th' if is_teen else suffixes.get(number % 10, 'th')}"
 
 
 class FastestRotor:
-    """Recorder of the maximum rotor speed, rad/s, and the time of the last row, s."""
+    """Recorder of the maximum rotor speed (rad/s) and the time of the last row (s)."""
 
     wrenches = False
 
@@ -80,13 +80,13 @@ class FastestRotor:
         self.time = 0.0
 
     def receive(self, table: np.ndarray, _: np.ndarray) -> None:
-        """Update the values."""
+        """Update the results with new rows."""
         if len(table):
             self.speed = max(self.speed, np.abs(table[:, self._rotors]).max(initial=0.0))
             self.time = table[-1, 0]
 
     def close(self) -> None:
-        """Do nothing, as no file is open."""
+        """Do nothing, because no file is open."""
 
 
 class TrackingError:
@@ -100,7 +100,7 @@ class TrackingError:
         self._late: Deque[Tuple[np.ndarray, np.ndarray]] = collections.deque()
 
     def receive(self, table: np.ndarray, _: np.ndarray) -> None:
-        """Update the values."""
+        """Update the results with new rows."""
         if len(table) == 0:
             return
         lengths = np.linalg.norm(table[:, self._error], axis=1)
@@ -112,7 +112,7 @@ class TrackingError:
             self._late.popleft()
 
     def close(self) -> None:
-        """Do nothing, as no file is open."""
+        """Do nothing, because no file is open."""
 
     @property
     def max(self) -> float:
@@ -121,7 +121,7 @@ class TrackingError:
 
     @property
     def rms(self) -> float:
-        """Root mean square of the tracking error of all rows, m."""
+        """RMS tracking error of all rows, m."""
         return math.sqrt(self._squares / self._count) if self._count else math.nan
 
     @property
@@ -134,7 +134,7 @@ class TrackingError:
 
 
 class Recording:
-    """All recorders of one flight; the others continue if a file fails."""
+    """All recorders of a flight. If a file fails, the other recorders continue."""
 
     def __init__(self, files: Sequence[LogFile], others: Sequence[Recorder]) -> None:
         self._files, self._others = list(files), list(others)
@@ -146,7 +146,7 @@ class Recording:
         return any(recorder.wrenches for recorder in [*self._files, *self._others])
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Pass a piece on; raises `InputError` once the last file has failed."""
+        """Pass on a piece; raise `InputError` when every file has failed."""
         for recorder in self._others:
             recorder.receive(table, wrenches)
         self._try_each(lambda file: file.receive(table, wrenches))
@@ -154,7 +154,7 @@ class Recording:
             raise self._failure
 
     def close(self) -> List[Path]:
-        """Close all recorders, and return the files that contain the flight."""
+        """Close all recorders, and return the files that contain the whole flight."""
         for recorder in self._others:
             recorder.close()
         self._try_each(lambda file: file.close())

@@ -1,4 +1,4 @@
-"""Pilots that follow a reference, and those of controllers in plugins."""
+"""Pilots that follow a reference, including pilots of plugin controllers."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ TOPIC = "reference"
 
 
 class ReferencePilot(Pilot):
-    """Pilot (see `flight.fly`) that adds reference and tracking error to the log.
+    """Pilot (see `flight.fly`) that adds the reference and the tracking error to the log.
 
     Attributes
     ----------
     columns : sequence of str
-        Names of the columns that the log has for the reference.
+        Names of the log columns of the reference and of the error.
     """
 
     def __init__(
@@ -46,17 +46,17 @@ class ReferencePilot(Pilot):
         self._reference = reference
 
     def fill_columns(self, table: np.ndarray) -> None:
-        """Fill the columns of the reference, the first ones of the pilot, in rows of a log."""
+        """Fill the columns of the reference, which come first among those of the pilot."""
         if self._reference is None:
             return
         wanted = self.sample(table[:, 0])
         own = table[:, -len(self.columns) :]
         own[:, :4] = wanted
-        for axis in range(3):  # NumPy takes longer for rows of three numbers than for columns
+        for axis in range(3):  # NumPy is slower on rows of three numbers than on columns
             np.subtract(table[:, 1 + axis], wanted[:, axis], out=own[:, 4 + axis])
 
     def sample(self, times: np.ndarray) -> np.ndarray:
-        """Return position and yaw of the reference at times; shape (n, 4)."""
+        """Return the position (m) and yaw (rad) of the reference at some times, shape (n, 4)."""
         assert self._reference is not None
         return references.sample_positions(self._reference, times)
 
@@ -68,9 +68,9 @@ _COLUMNS = (
 
 
 class PluginPilot(ReferencePilot):
-    """Pilot of a vehicle with a controller plugin, which publishes the reference in each step.
+    """Pilot of a vehicle with a controller plugin, which publishes the reference at each step.
 
-    The calls of the plugin are unknown: rate, delay and saturated calls are NaN.
+    The calls of the plugin are unknown, so rate, delay and the number of saturated calls are NaN.
     """
 
     rate = delay = saturated = math.nan
@@ -82,7 +82,7 @@ class PluginPilot(ReferencePilot):
     estimate_errors: Optional[np.ndarray] = None
 
     def note_estimates(self) -> None:
-        """Do nothing: the estimates of a plugin are unknown."""
+        """Do nothing, because the estimates of a plugin are unknown."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Collector of the rows of a flight."""
+"""Collector of the logged rows of a flight."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .trajectory import per_command
 
 
 class Rows:
-    """Collector of the rows that `fly` passes on; if memory runs out, earlier rows stay."""
+    """Collector of the rows that `fly` passes on. If memory runs out, earlier rows remain."""
 
     def __init__(self, simulation: _core.Simulation, columns: Sequence[str]) -> None:
         self._columns = list(columns)
@@ -25,7 +25,7 @@ class Rows:
         self._with_wrenches = False
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Append a piece."""
+        """Append a piece of rows."""
         self._table = _append(self._table, self._count, table)
         if len(wrenches):
             self._with_wrenches = True
@@ -33,7 +33,7 @@ class Rows:
         self._count += len(table)
 
     def log(self) -> Log:
-        """Return the rows so far."""
+        """Return the rows so far as a log."""
         wrenches = self._wrenches[: self._count]
         named = {name: wrenches[:, i] for i, name in enumerate(self._terms)}
         log = Log.of_rows(
@@ -47,11 +47,11 @@ class Rows:
 
 
 def _append(array: np.ndarray, count: int, piece: np.ndarray) -> np.ndarray:
-    """Append a piece to the first `count` rows of an array; returns the array with all rows."""
+    """Append a piece to the first `count` rows of an array, and return the extended array."""
     if len(piece) == 0:
         return array
     if count == 0:
-        return piece[:]  # most flights have one piece, which others may hold as well
+        return piece[:]  # most flights have a single piece, which other recorders may use as well
     if not array.flags.owndata:
         array = array.copy()
     _grow(array, count + len(piece))
@@ -60,10 +60,10 @@ def _append(array: np.ndarray, count: int, piece: np.ndarray) -> np.ndarray:
 
 
 def _grow(array: np.ndarray, rows: int) -> None:
-    """Enlarge an array to at least `rows` rows, in place if possible."""
+    """Enlarge an array to at least this number of rows, in place if possible."""
     if rows <= len(array):
         return
-    # resize() uses realloc, which moves large blocks without copying them.
+    # resize() uses realloc, which moves large blocks without copying.
     try:
         array.resize((rows + rows // 8, *array.shape[1:]), refcheck=False)
     except MemoryError:

@@ -1,4 +1,4 @@
-"""Events of scenarios, which become lists in tags of plugins."""
+"""Events of scenarios, which are converted to lists in plugin tags."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from ..support.yaml_nodes import find_line, read_numbers, read_pairs
 
 
 class EventKind(NamedTuple):
-    """Kind of event, selected by its key."""
+    """Kind of event, identified by its key."""
 
     library: str
-    """Library of the plugin, and its name unless the event has another."""
+    """Library of the plugin, and default name of the plugin."""
     tag: str
     numbers: int
-    """Count of numbers after the key; 0 for the name of a plugin."""
+    """Number of values after the key; 0 if the value is the name of a plugin."""
     others: Mapping[str, Tuple[int, str]]
-    """Further keys: count of numbers, and default or "" if the key is required."""
+    """Additional keys with their number of values and their default ("" for a required key)."""
     row: str
-    """Format of a row in the list of the tag."""
+    """Format of the row that is added to the tag."""
     label: str
     """Format of the label in plots."""
 
@@ -44,11 +44,11 @@ KINDS: Dict[str, EventKind] = {
     ),
     "cut": EventKind("fault", "cuts", 1, {}, "{at} {cut}", "rotor {cut} cut"),
 }
-"""Kinds of events, by key."""
+"""Kinds of events by key."""
 
 
 class Event(NamedTuple):
-    """Event at a time."""
+    """Event in a flight."""
 
     time: float
     """Simulation time, s."""
@@ -61,13 +61,13 @@ class Event(NamedTuple):
     """Row that the event adds to the tag."""
     may_repeat: bool
     thing: str
-    """Affected part."""
+    """Name of the affected part in messages."""
     rotor: Optional[float]
-    """Affected rotor, from 1."""
+    """Number of the affected rotor, starting at 1; None for other events."""
     line: int
 
     def check(self, file: str, rotors: int) -> None:
-        """Raise `InputError` if the vehicle has no such rotor."""
+        """Raise `InputError` if the vehicle does not have the affected rotor."""
         if self.rotor is not None and self.rotor not in range(1, rotors + 1):
             raise InputError(
                 f"{file}:{self.line}: rotor {self.rotor:g} does not exist. Use 1 to {rotors}."
@@ -82,12 +82,12 @@ def read_events(file: str, node: yaml.Node) -> Sequence[Event]:
     file
         Name of the scenario file in messages.
     node
-        List of events.
+        YAML node with the list of events.
 
     Raises
     ------
     InputError
-        If an event is wrong; the message begins with ``FILE:LINE``.
+        If an event is invalid; the message begins with ``FILE:LINE``.
     """
     what = "events as a list of {at: TIME, KIND: ...}"
     if not isinstance(node, yaml.SequenceNode):
@@ -133,7 +133,7 @@ def _read_event(file: str, node: yaml.Node, what: str) -> Event:
         else:
             raise InputError(f"{where}: {name} lacks '{key}'. Write it.")
     time = parse_number(values["at"])
-    assert time is not None  # it was read as one
+    assert time is not None  # the value was already read as a number
     if time < 0:
         at = find_line(given["at"][0])
         raise InputError(

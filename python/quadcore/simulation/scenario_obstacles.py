@@ -1,4 +1,4 @@
-"""Obstacles that a scenario places in the world."""
+"""Obstacles that a scenario adds to the world."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ KINDS = {
     "cylinder": "<radius>{0}</radius><length>{1}</length>",
     "sphere": "<radius>{0}</radius>",
 }
-"""Geometries of SDF, by key of an obstacle in a scenario."""
+"""SDF geometries by the key of the obstacle in a scenario."""
 
 _FORM = "obstacles as a list of {KIND: SIZES, at: [X, Y, Z]}"
 
 
 class PlacedObstacle(NamedTuple):
-    """Obstacle that stands still."""
+    """Static obstacle."""
 
     name: str
-    """Name of its model."""
+    """Name of the obstacle's model."""
     kind: str
     """One of `KINDS`."""
     sizes: Sequence[str]
-    """Box: x, y, z; cylinder: radius, length; sphere: radius, m."""
+    """Dimensions, m: x, y, z of a box, radius and length of a cylinder, or radius of a sphere."""
     pose: Sequence[str]
-    """Position in the world, m, and roll, pitch, yaw, rad."""
+    """Position in the world (m), then roll, pitch and yaw (rad)."""
     line: int
 
     def write(self) -> str:
-        """Return its model as SDF in one line."""
+        """Return the obstacle as an SDF model in one line."""
         from xml.sax.saxutils import quoteattr  # imports urllib.request, which is slow
 
         geometry = KINDS[self.kind].format(*self.sizes)
@@ -54,12 +54,12 @@ def read_obstacles(file: str, node: yaml.Node) -> Sequence[PlacedObstacle]:
     file
         Name of the scenario file in messages.
     node
-        List of obstacles.
+        YAML node with the list of obstacles.
 
     Raises
     ------
     InputError
-        If an obstacle is wrong; the message begins with ``FILE:LINE``.
+        If an obstacle is invalid; the message begins with ``FILE:LINE``.
     """
     if not isinstance(node, yaml.SequenceNode):
         raise InputError(f"{file}:{find_line(node)}: write {_FORM}")
@@ -77,13 +77,13 @@ def read_obstacles(file: str, node: yaml.Node) -> Sequence[PlacedObstacle]:
 
 
 def add_obstacles(world: World, obstacles: Sequence[PlacedObstacle], file: str) -> World:
-    """Return a world with further obstacles.
+    """Return the world with additional obstacles.
 
     Raises
     ------
     InputError
-        If the world has a model of the same name or the size of an obstacle is wrong; the message
-        begins with ``FILE:LINE``.
+        If the world has a model with the same name, or the size of an obstacle is invalid. The
+        message begins with ``FILE:LINE``.
     """
     if not obstacles:
         return world
@@ -129,7 +129,7 @@ def _read_obstacle(file: str, node: yaml.Node, number: int) -> PlacedObstacle:
 
 
 def _find_models(text: str) -> List[str]:
-    """Return the names of the models of a world."""
-    from xml.etree import ElementTree  # takes 6 ms to import
+    """Return the names of the models in a world."""
+    from xml.etree import ElementTree  # its import takes 6 ms
 
     return [model.get("name", "") for model in ElementTree.fromstring(text).iter("model")]

@@ -1,8 +1,8 @@
 """Scenarios: disturbances, faults, payload events and obstacles of a flight, in YAML.
 
 A scenario file is a mapping with ``plugins``, ``events`` and ``obstacles``. ``plugins`` contains
-tags by the name of the plugin; plugins that the model does not have are added. `KINDS` lists the
-events. The built-in files are ``config/scenarios/NAME.yaml``.
+tag values by plugin; plugins that the model does not have are added. `KINDS` lists the events. The
+built-in files are ``config/scenarios/NAME.yaml``.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _WRITE = "plugins:, events: or obstacles:"
 
 
 class Tag(NamedTuple):
-    """Tag of a plugin in a scenario."""
+    """Tag of a plugin in a scenario file."""
 
     name: str
     value: str
@@ -42,7 +42,7 @@ class Tag(NamedTuple):
 
 
 class PluginEntry(NamedTuple):
-    """Plugin in a scenario."""
+    """Plugin in a scenario file."""
 
     name: str
     library: str
@@ -68,7 +68,7 @@ class Scenario:
     Raises
     ------
     InputError
-        If the file is missing or wrong; the message begins with ``FILE:LINE``.
+        If the file is missing or invalid; the message begins with ``FILE:LINE``.
     """
 
     def __init__(self, path: Union[str, Path]) -> None:
@@ -101,12 +101,13 @@ class Scenario:
         Returns
         -------
         tuple
-            Model with the added plugins, and values by ``PLUGIN.TAG`` of its own plugins.
+            Model with the added plugins, and values by ``PLUGIN.TAG`` for plugins that the model
+            already has.
 
         Raises
         ------
         InputError
-            If a plugin, tag, value or rotor is wrong; the message begins with ``FILE:LINE``.
+            If a plugin, tag, value or rotor is invalid; the message begins with ``FILE:LINE``.
         """
         for event in self.events:
             event.check(self._file, len(model.joints))
@@ -124,22 +125,22 @@ class Scenario:
         return read_model(document, list(model.ignored_elements.ignored)), parameters
 
     def add_obstacles(self, world: World) -> World:
-        """Return a world with the obstacles of the scenario.
+        """Return the world with the obstacles of the scenario.
 
         Raises
         ------
         InputError
-            If an obstacle is wrong; the message begins with ``FILE:LINE``.
+            If an obstacle is invalid; the message begins with ``FILE:LINE``.
         """
         return add_obstacles(world, self._obstacles, self._file)
 
     def describe_late_events(self, end: float) -> str:
-        """Return a warning about events after the end of a flight, or "".
+        """Return a warning about events after the end of a flight; "" without such events.
 
         Parameters
         ----------
         end
-            End of the flight, s.
+            Time at which the flight ends, s.
         """
         late = [event for event in self.events if event.time >= end]
         if not late:
@@ -149,7 +150,7 @@ class Scenario:
 
     @contextmanager
     def locate_errors(self) -> Iterator[None]:
-        """Add file and line to errors of the block about tags of the scenario."""
+        """Add file and line to errors in the block that concern tags of the scenario."""
         try:
             yield
         except InputError as error:
@@ -159,7 +160,7 @@ class Scenario:
                     given = re.escape(f"{addition.name}.{tag.name}")
                     if re.match(rf"set {given}(?![\w.])", str(error)):
                         raise InputError(f"{where}: {str(error)[4:]}") from error
-                    # If two plugins must agree, the message names the line in the model.
+                    # If two plugins must agree, the message names the line in the model file.
                     if re.search(rf"<{tag.name}> is .* in '{addition.name}' \(set\)", str(error)):
                         raise InputError(f"{where}: {error}") from error
             raise
@@ -178,7 +179,7 @@ def add_wind(model: Model, velocity: Sequence[float]) -> Tuple[Model, Dict[str, 
     Returns
     -------
     tuple
-        Model with a plugin ``wind``, and values by ``PLUGIN.TAG`` if it already has one.
+        Model with a plugin ``wind``, and values by ``PLUGIN.TAG`` if the model already has one.
     """
     text = " ".join(repr(float(part)) for part in velocity)
     names, end = _find_plugins(model.document.text)
@@ -199,7 +200,7 @@ def add_controller(model: Model, controller: PluginController) -> Model:
 
 
 def read_scenario(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:
-    """Read a scenario, unless it is read already; return None for `NONE`."""
+    """Read a scenario unless it is already read; return None for `NONE`."""
     if scenario is None or isinstance(scenario, Scenario):
         return scenario
     return None if str(scenario) == NONE else Scenario(scenario)
@@ -257,7 +258,7 @@ def _read_value(file: str, tag: yaml.ScalarNode, node: yaml.Node) -> str:
 
 
 def _add_event(file: str, addition: PluginEntry, event: Event) -> None:
-    """Add an event to the list in the tag of its plugin."""
+    """Add an event to the list in the plugin tag."""
     for i, tag in enumerate(addition.tags):
         if tag.name != event.tag:
             continue
@@ -272,7 +273,7 @@ def _add_event(file: str, addition: PluginEntry, event: Event) -> None:
 
 
 def _find_plugins(text: str) -> Tuple[List[str], int]:
-    """Return the names of the plugins of a model, and the position where its root element ends."""
+    """Return the plugin names of a model, and the position at which its root element ends."""
     parser = expat.ParserCreate()
     names: List[str] = []
     end = depth = 0
@@ -298,13 +299,13 @@ def _find_plugins(text: str) -> Tuple[List[str], int]:
 def _insert_plugins(
     document: Document, end: int, added: Sequence[PluginEntry], file: str
 ) -> Document:
-    """Insert plugins into a model; messages about their lines name the scenario."""
+    """Insert plugins into a model; error messages about them refer to lines of the scenario."""
     from xml.sax.saxutils import escape, quoteattr  # imports urllib.request, which is slow
 
     before, after = document.text[:end], document.text[end:]
     count = document.text.count("\n") + 1
     lines: List[Any] = document.lines or [(document.name, i + 1) for i in range(count)]
-    last = before.count("\n") + 1  # the line in which the root element ends
+    last = before.count("\n") + 1  # line in which the root element ends
     written, places = [], []
     for addition in added:
         head = f"name={quoteattr(addition.name)} filename={quoteattr(addition.library)}"

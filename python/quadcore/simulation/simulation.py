@@ -38,26 +38,26 @@ class Simulation(_core.Simulation):
     Parameters
     ----------
     model : str, path or Model, default "quadrotor"
-        URDF or xacro file, name of a built-in model, or a model that `read_model` returned.
+        URDF or xacro file, name of a built-in model, or a model returned by `read_model`.
     engine : {"gazebo11", "ode", "eigen"}, default "gazebo11"
-        Engine; `quadcore.engines()` describes each.
+        Physics engine; `quadcore.engines()` describes each engine.
     world : str, path or World, optional
-        World file, name of a built-in world, or a world that `read_world` returned.
-        Default: empty.world.
+        World file, name of a built-in world, or a world returned by `read_world`. Default:
+        empty.world.
     dt : float, optional
         Step, s. Default: max_step_size of the world.
     seed : int, default 0
-        Seed of all noise. The same seed gives a bit-identical simulation.
+        Seed of all noise. Simulations with the same seed are bit-identical.
     parameters : mapping of str to number, str, bool, path or sequence of those, optional
         Values by "PLUGIN.TAG", which override the URDF. "LINK.mass", "LINK.ixx" ... "LINK.izz",
-        "LINK.com_x" ... "LINK.com_z" and "xacro.ARG" are accepted as well.
+        "LINK.com_x" ... "LINK.com_z" and "xacro.ARG" are also accepted.
     xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
     spawn : sequence of 3 or 6 numbers, default (0, 0, 10)
         x, y, z (m) and roll, pitch, yaw (rad) of the frame link in the world.
     ignore : sequence of str, default ()
-        Unknown parts of model and world to leave out: names or file names of plugins, names of
-        elements, URIs or names of models in the world. `ignored` lists them.
+        Unknown parts of the model and the world to ignore: names or file names of plugins, names of
+        elements, URIs or names of models in the world. The attribute `ignored` lists them.
 
     Attributes
     ----------
@@ -69,8 +69,8 @@ class Simulation(_core.Simulation):
     Raises
     ------
     InputError
-        If the model, the world or an argument is wrong; the message begins with ``FILE:LINE``
-        where a file is at fault.
+        If the model, the world or an argument is invalid. The message begins with ``FILE:LINE`` if
+        a file causes the error.
 
     Warns
     -----
@@ -114,10 +114,10 @@ class Simulation(_core.Simulation):
 
         @property
         def state(self) -> LiveState:
-            """Declare what type checkers read."""
+            """Declare the type for type checkers."""
 
     else:
-        # attrgetter, not a function: reading the state is part of every step of a Python loop.
+        # attrgetter is faster than a function, and every step of a Python loop reads the state.
         state = property(
             attrgetter("_live"),
             doc="Current state, as read-only views that change as the simulation steps.",
@@ -125,10 +125,10 @@ class Simulation(_core.Simulation):
 
     @property
     def hover_speed(self) -> np.ndarray:
-        """Commands at which the vehicle hovers level, signed, rad/s; shape (n,).
+        """Signed commands at which the vehicle hovers level, rad/s; shape (n,).
 
-        Neighbouring rotors turn in opposite directions; rotor faults are not considered. The
-        first access evaluates the force models, which takes some milliseconds.
+        Neighbouring rotors turn in opposite directions. Rotor faults are not considered. The first
+        access evaluates the force models, which takes some milliseconds.
 
         Raises
         ------
@@ -139,26 +139,26 @@ class Simulation(_core.Simulation):
 
     @property
     def vehicle(self) -> Vehicle:
-        """View of the vehicle as arrays, as controllers receive it in a study."""
+        """View of the vehicle as arrays, as controllers receive it in studies."""
         return Vehicle(self)
 
     def restore(  # type: ignore[override]  # pybind11 2.4 has no keyword-only arguments
         self, snapshot: _core.Snapshot, *, allow: Sequence[str] = ()
     ) -> None:
-        """Restore a snapshot, bit-identically, including the seed.
+        """Restore a snapshot bit-identically, including the seed.
 
         Parameters
         ----------
         snapshot : Snapshot
-            Snapshot of this simulation, or of an equal one in any process.
+            Snapshot of this simulation, or of an equal simulation in any process.
         allow : sequence of str, default ()
-            Differences to accept: "world", "parameters". The values of this simulation stay.
+            Differences to accept: "world", "parameters". This simulation keeps its own values.
 
         Raises
         ------
         InputError
-            If the snapshot belongs to a different simulation or is damaged. The simulation does
-            not change.
+            If the snapshot belongs to a different simulation or is damaged. The simulation does not
+            change in this case.
         """
         super().restore(snapshot, check_names_argument("allow", allow))
 
@@ -168,7 +168,7 @@ class Simulation(_core.Simulation):
         Parameters
         ----------
         seed : int, optional
-            New seed of all noise. Default: the present seed.
+            New seed of all noise. Default: the current seed.
         """
         super().reset(None if seed is None else check_whole(seed))
 
@@ -186,7 +186,7 @@ class Simulation(_core.Simulation):
         ------
         InputError
             If the topic does not exist or a plugin writes it, if the fields are wrong, if a number
-            is not finite, or if a running flight owns the topic. Nothing changes.
+            is not finite, or if a running flight uses the topic. Nothing changes in this case.
         """
         if isinstance(values, Mapping):
             known = self.topics.get(topic)
@@ -206,7 +206,7 @@ class Simulation(_core.Simulation):
         reference: Union[ReferenceLike, ReferenceName, None] = None,
         on_reference: bool = False,
     ) -> Log:
-        """Simulate for a duration and log the states.
+        """Simulate for a duration, and log the states.
 
         Any exception that ends the run has the attribute `log`, which contains the rows so far.
 
@@ -216,41 +216,41 @@ class Simulation(_core.Simulation):
             Duration, s. Only steps that end within it are simulated.
         commands : ndarray (rows, 1 + n), or path of a .csv, .mat or .bag file, optional
             Open-loop commands with columns t, w1..wn: time (s) and signed rotor speeds (rad/s).
-            Each row holds until the next. Default: the present command.
+            Each row holds until the next one. Default: the current command.
         log_every : int, default 1
             Steps between logged rows.
         progress : callable, optional
-            Called as progress(steps_done, steps_total) every few hundredths of a second.
+            Function called as progress(steps_done, steps_total) every few hundredths of a second.
         wrenches : bool, default False
-            Whether to log forces and torques in `Log.wrenches`, which triples the memory.
+            Whether to log forces and torques in `Log.wrenches`, which triples the memory use.
         topics : sequence of str, default ()
             Names of topics to log in `Log.topics`.
         controller : name, object or callable, optional
-            Controller, instead of `commands`. The name of a built-in controller selects the gains
-            that are built in for the vehicle, or else the defaults. Any other controller is called
-            as controller(t, state, reference) and returns n rotor speeds (rad/s); see
-            `Controller`. `quadcore.controllers.parse` reads texts with parameters.
+            Controller, instead of `commands`. The name of a built-in controller selects its gains
+            for the vehicle, or its default gains. Any other controller is called as controller(t,
+            state, reference) and returns n rotor speeds (rad/s); see `Controller`.
+            `quadcore.controllers.parse` reads names with parameters.
         reference : name or callable, optional
             Reference trajectory of the controller: the name of a built-in reference, a reference
-            from `quadcore.references`, or a function reference(t) of the simulation time (s)
-            alone. The log contains it as topic ``reference`` (x, y, z, yaw) and the tracking error
-            as topic ``error`` (x, y, z).
+            from `quadcore.references`, or a function reference(t) that depends only on the
+            simulation time (s). The log contains the reference as topic ``reference`` (x, y, z,
+            yaw) and the tracking error as topic ``error`` (x, y, z).
         on_reference : bool, default False
             Whether to start in the full state of a vehicle that follows the reference; see
-            `quadcore.references.start`. Otherwise the present state is the start.
+            `quadcore.references.start`. Otherwise the flight starts in the current state.
 
         Returns
         -------
         Log
-            Log of the states; its first row is the present state.
+            Log of the states; its first row is the current state.
 
         Raises
         ------
         InputError
-            If an argument is wrong; nothing is simulated. Also if a callback, such as the
-            controller, moves or commands the vehicle itself, which ends the flight.
+            If an argument is invalid; in this case nothing is simulated. Also if a callback, such
+            as the controller, moves or commands the vehicle itself, which ends the flight.
         FlightError
-            If the flight fails, or the controller returns no valid command.
+            If the flight fails, or the controller returns an invalid command.
         """
         check_source(commands, controller, reference)
         check_start(on_reference, reference)
@@ -275,7 +275,7 @@ class Simulation(_core.Simulation):
         )
 
     def _repr_html_(self) -> str:
-        from html import escape  # these are slow to import
+        from html import escape  # slow to import
 
         from ..report.html_table import html_table
 
@@ -297,7 +297,7 @@ class Simulation(_core.Simulation):
 
 
 def check_source(commands: object, controller: object, reference: object) -> None:
-    """Raise `InputError` if commands, controller and reference of a flight do not fit together."""
+    """Raise `InputError` if commands, controller and reference of a flight are inconsistent."""
     if commands is not None and controller is not None:
         raise _core.InputError("a flight takes commands or a controller. Give one of them.")
     if reference is not None and controller is None:
@@ -311,7 +311,7 @@ def check_start(on_reference: bool, *references: object) -> None:
 
 
 def find_start(simulation: Simulation, controller: Any, reference: Any) -> State:
-    """Return the state of a vehicle that follows a reference at the present time."""
+    """Return the state of a vehicle that follows a reference at the current time."""
     if isinstance(reference, str):
         reference = references.parse(reference)
     spins = controller.spins if isinstance(controller, BuiltInController) else ()
@@ -320,7 +320,7 @@ def find_start(simulation: Simulation, controller: Any, reference: Any) -> State
 
 
 def make_simulation(engine: str, **options: Any) -> Simulation:
-    """Make a simulation with any engine of `list_engines`; `options` as for `Simulation`."""
+    """Make a simulation with any engine in `list_engines`; `options` are those of `Simulation`."""
     added = find_added_engine(engine)
     if added is None:
         return Simulation(engine=engine, **options)  # type: ignore[arg-type]

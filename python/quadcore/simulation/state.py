@@ -1,4 +1,4 @@
-"""State of a vehicle: as a copy, and as live views."""
+"""State of a vehicle, as a copy and as live views."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _VECTORS = (
 
 
 class State:
-    """State of a vehicle; every attribute can be assigned.
+    """State of a vehicle; all attributes can be assigned.
 
     Attributes
     ----------
@@ -66,12 +66,12 @@ class State:
 
 
 class LiveState:
-    """Current state of a simulation: read-only views that change as it steps.
+    """Current state of a simulation: read-only views that change at each step.
 
     The attributes are those of `State`. `copy()`, `copy.copy` and `pickle` make an independent
-    `State` of a single moment. Within `run`, they change when a controller in Python is called or a
-    row is logged, and at the end. A view may mix two moments if it is read while another thread
-    steps; `copy()` raises an error in this case.
+    `State` at one instant. During `run`, the views change when a Python controller is called, when
+    a row is logged, and at the end. If another thread steps the simulation, a view may mix two
+    instants; `copy()` raises an error in this case.
     """
 
     __slots__ = ("_clock", "_copy", *_VECTORS)
@@ -119,7 +119,7 @@ class LiveState:
 
 
 def make_state(members: Mapping[str, Any]) -> State:
-    """Make a state from its attributes by name."""
+    """Make a state from a mapping of its attributes."""
     state = State()
     for name, value in members.items():
         setattr(state, name, value)

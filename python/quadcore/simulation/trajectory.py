@@ -18,18 +18,18 @@ _STATE_SIZE = len(log_columns(0))
 
 
 def per_command(simulation: Simulation) -> float:
-    """Return the ratio of joint velocity to commanded speed; 1 if rotors differ."""
+    """Return the ratio of joint velocity to commanded speed; 1 if it differs between rotors."""
     sizes = {abs(rate) for rate in simulation._rates_per_command.tolist()}
     return sizes.pop() if len(sizes) == 1 else 1.0
 
 
 def find_speed_limit(rotors: Sequence[Rotor]) -> float:
-    """Return the limit of the joint speeds that all rotors share, rad/s; infinite without one."""
+    """Return the lowest speed limit of all rotor joints, rad/s; infinite without a limit."""
     return min((rotor.max_speed / rotor.slowdown for rotor in rotors), default=math.inf)
 
 
 def is_slow(size: float) -> bool:
-    """Return whether a ratio of joint velocity to commanded speed is known and not 1."""
+    """Return whether the ratio of joint velocity to commanded speed is known and not 1."""
     return size not in (0.0, 1.0)
 
 
@@ -44,7 +44,7 @@ def _check_table(table: Any) -> FloatArray:
 
 
 class Wrenches(Dict[str, np.ndarray]):
-    """Wrenches by name of the term."""
+    """Wrenches by the name of their term."""
 
     def __missing__(self, name: str) -> FloatArray:
         if self:
@@ -60,16 +60,16 @@ class Trajectory:
     Parameters
     ----------
     table : ndarray (rows, 14 + n)
-        States with the columns of `columns`.
+        States, with the columns in `columns`.
     wrenches : mapping of str to ndarray (rows, 6), optional
-        Force (N), then torque (N m), frame axes, about the centre of mass of the vehicle. Each row
-        is the wrench during the step that begins there.
+        Force (N), then torque (N m), in frame axes, about the centre of mass of the vehicle. Each
+        row is the wrench during the step that begins at this row.
     title : str, default ""
         Title of plots.
     ignored : sequence of str, default ()
-        Parts of model and world that the option `ignore` left out.
+        Parts of the model and the world that the option `ignore` left out.
     topics : mapping of str to mapping of str to ndarray (rows,), optional
-        Logged topics: fields of the latest message and its ``stamp`` (s). NaN before the first
+        Logged topics: the fields of the latest message and its ``stamp`` (s). NaN before the first
         message.
 
     Raises
@@ -80,7 +80,7 @@ class Trajectory:
     Attributes
     ----------
     per_command : float
-        Ratio of joint velocity to commanded speed, for example 0.1 at a sim_slow of 10; 1 if it is
+        Ratio of joint velocity to commanded speed, for example 0.1 for a sim_slow of 10; 1 if it is
         unknown.
     """
 
@@ -105,7 +105,7 @@ class Trajectory:
 
     @property
     def is_slow(self) -> bool:
-        """Whether the joints are known to turn at another speed than commanded."""
+        """Whether the joints are known to turn at a speed other than the commanded one."""
         return is_slow(self.per_command)
 
     @property
@@ -120,7 +120,7 @@ class Trajectory:
 
     @property
     def position(self) -> FloatArray:
-        """Origin of the frame link in the world, m; shape (rows, 3)."""
+        """Position of the frame link's origin in the world, m; shape (rows, 3)."""
         return self.table[:, 1:4]
 
     @property

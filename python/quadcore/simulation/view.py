@@ -27,14 +27,14 @@ from .log import Log
 from .rows import Rows
 from .simulation import Simulation
 
-_HEIGHT = 760  # px, of the page in a notebook
+_HEIGHT = 760  # px; height of the page in a notebook
 
 Shown = Union[Simulation, Log, Sequence[Log], Mapping[str, Log]]
 Vehicle = Union[str, Path, Model]
 
 
 class View:
-    """View of one simulation or of logs, from `view`.
+    """View of a simulation or of logs, as returned by `view`.
 
     Parameters
     ----------
@@ -68,12 +68,12 @@ class View:
         self.url = self._server.url
 
     def sync(self) -> None:
-        """Show the present state of the simulation; a view of logs is complete already.
+        """Show the current state of the simulation; a view of logs does not change.
 
         Raises
         ------
         InputError
-            If the time of the simulation went back.
+            If the time of the simulation has decreased.
         """
         simulation = self._simulation
         if simulation is None or self._live is None:
@@ -92,17 +92,17 @@ class View:
         self._live.receive(table, np.empty((0, 0, 6)))
 
     def save(self, path: Union[str, Path]) -> None:
-        """Write what the view has shown: a page (.html) or an animation (.gif).
+        """Write everything that the view has shown as a page (.html) or an animation (.gif).
 
         Parameters
         ----------
         path : str or path
-            File. A GIF needs Chromium or Chrome.
+            Path of the file. A GIF requires Chromium or Chrome.
 
         Raises
         ------
         InputError
-            If the suffix is another, or the file cannot be written.
+            If the suffix is not supported, or the file cannot be written.
         """
         file = Path(path)
         if file.suffix.lower() not in (".html", ".gif"):
@@ -124,7 +124,7 @@ class View:
         return make_page(flights, ", ".join(self._logs), self._world, self._camera)
 
     def _repr_html_(self) -> str:
-        """Return a frame with the page, and a picture for readers that allow no scripts."""
+        """Return a frame with the page, and a static image for viewers without scripts."""
         if self._simulation is not None:
             source = f'src="{self.url}"'
         else:
@@ -150,23 +150,24 @@ def view(
     Parameters
     ----------
     shown : Simulation, Log, sequence of Log, or mapping of str to Log
-        Simulation to show while it steps, with `View.sync`; or logs, by their names.
+        Simulation to show while it steps, with `View.sync`; or logs with their names.
     model : str, path or Model, optional
-        Model of the logs. Default: a star of arms. A simulation shows its own.
+        Model of the logs (default: a star of arms). A simulation shows its own model.
     camera : str, default "follow"
-        Camera at the start: follow, chase, top, side or whole.
+        Initial camera: "follow", "chase", "top", "side" or "whole".
     browser : bool, optional
-        Whether to open the browser. Default: if there is a screen, and no notebook.
+        Whether to open the browser. By default, it opens on a machine with a screen, but not in a
+        notebook.
 
     Returns
     -------
     View
-        View; as the last value of a notebook's cell, it is the animation.
+        View. As the last value of a notebook cell, it shows the animation.
 
     Raises
     ------
     InputError
-        If there is nothing to show, or the model is not that of the logs.
+        If there is nothing to show, or the model does not match the logs.
     """
     if isinstance(shown, Simulation) and model is not None:
         raise InputError("model: a simulation shows its own vehicle. Leave model out.")
@@ -196,7 +197,7 @@ def _read(model: Vehicle) -> Model:
 
 
 def _make_picture(log: Log) -> str:
-    """Make a picture that is hidden where frames and styles work."""
+    """Make a static image that is hidden where frames and styles work."""
     from ..report.log_plots import draw_overview  # matplotlib is slow to import
     from ..report.plots import png
 

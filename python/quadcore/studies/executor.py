@@ -72,8 +72,8 @@ def run_cases(
         `function` raises a QuadcoreError or its process dies, the result is a QuadcoreError, and
         the other cases continue. An interrupt waits for `take`.
     processes
-        Number of processes. None: one per usable core. If there are fewer cases, or the system cannot
-        start all of them, fewer run.
+        Number of processes. None: one per usable core. Fewer run if there are fewer cases, or if
+        the system cannot start all of them.
     conclude
         Function called with the result in the same process; its return value replaces the result.
         An interrupt waits until `take` has received the result. Therefore a file written by
@@ -244,7 +244,7 @@ class _WorkerPool:
             _join(process)
 
     def _replace(self) -> bool:
-        """Start a process with the next case; return False if there is no case, or no process can start."""
+        """Start a process with the next case; return False if there is none, or it cannot start."""
         for index, case in itertools.islice(self._queue, 1):
             try:
                 connection, process = _start(self._task, list(self.busy))
