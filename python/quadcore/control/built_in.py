@@ -16,7 +16,7 @@ from .vehicle import unwrap
 class BuiltInController:
     """Built-in controller with its parameters.
 
-    Its model of the vehicle comes from the simulated vehicle, or from `belief`. Parameters named
+    Its model of the vehicle is that of the simulated vehicle, or of `belief`. Parameters named
     ``believed_...`` scale this model.
 
     Attributes
@@ -28,11 +28,12 @@ class BuiltInController:
     rate : float
         Calls per simulated second, 1/s.
     delay : float
-        Time from a call until its command reaches the motors, s.
+        Actuation delay: time from a call until its command reaches the motors, s.
     spins : list of float
-        Direction of each rotor, 1 or -1; empty if neighbouring rotors turn in opposite directions.
+        Direction of each rotor, 1 or -1. If it is empty, neighbouring rotors turn in opposite
+        directions.
     belief : Simulation, optional
-        Vehicle that the controller is designed for. Default: the simulated vehicle.
+        Vehicle for which the controller is designed. Default: the simulated vehicle.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class BuiltInController:
         Parameters
         ----------
         simulation : Simulation or Vehicle
-            Simulation that the controller is to command, or its view.
+            Simulation to command, or its view.
 
         Raises
         ------
@@ -72,7 +73,7 @@ class BuiltInController:
             self.name, vehicle, simulation, self.parameters, self.spins
         )
         rate = check_rate_or_delay(f"controller '{self.name}'", "rate", self.rate)
-        self._period = max(1 / rate, simulation.dt)  # called once a step at most
+        self._period = max(1 / rate, simulation.dt)  # at most one call per step
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
         """Return the signed rotor speeds, rad/s; see `Controller`."""
@@ -84,20 +85,20 @@ class BuiltInController:
 
     @property
     def core(self) -> _core.Controller:
-        """The controller in the core, which `reset` makes."""
+        """Controller object of the core, which `reset` makes."""
         if self._controller is None:
             raise _core.InputError(f"controller '{self.name}' is not ready. Call its reset().")
         return self._controller
 
     @property
     def saturated(self) -> bool:
-        """Whether the last command reached the limits of the rotors."""
+        """Whether the last command reached a limit of the rotors."""
         return self._controller is not None and bool(self._controller.saturated)
 
     def copy(self) -> BuiltInController:
-        """Return an equal controller that has not run."""
+        """Return an equal controller in its initial state."""
         same = BuiltInController(self.name, self.rate, self.delay, self.spins, self.belief)
-        same.parameters.update(self.parameters)  # the core checks their names
+        same.parameters.update(self.parameters)  # the core already checked the names
         return same
 
     def to_dict(self) -> Dict[str, Any]:
@@ -110,7 +111,7 @@ class BuiltInController:
         return {n: v for n, v in self.__dict__.items() if not n.startswith("_")}
 
     def __getstate__(self) -> Dict[str, Any]:
-        return {**self.__dict__, "_controller": None}  # reset() makes another
+        return {**self.__dict__, "_controller": None}  # reset() makes a new one
 
     def __repr__(self) -> str:
         inside = "".join(f", {name}={value:g}" for name, value in self.parameters.items())

@@ -1,4 +1,4 @@
-"""Controllers in compiled functions."""
+"""Controllers that are compiled functions."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from .vectorized import VectorState
 
 _NUMBERS = ctypes.POINTER(ctypes.c_double)
 _FUNCTION = ctypes.CFUNCTYPE(None).__mro__[1]
-_TAKES_INTERPRETER = 4  # flag of a function that runs with the lock of the interpreter
+_TAKES_INTERPRETER = 4  # flag of a function that holds the interpreter lock
 
 
 class CompiledController:
-    """Controller in a compiled function, which the core calls without the interpreter.
+    """Controller that is a compiled function, which the core calls without the interpreter.
 
     The function is ``void f(double t, double *state, double *reference, double *data, double
-    *speeds)``. It must not keep the pointers:
+    *speeds)``. It must not keep the pointers after the call:
 
     - `t`: simulation time, s.
-    - `state`: 13 measured numbers of the members of `Odometry`: position, m, orientation (x, y, z,
-      w), linear velocity, m/s, angular velocity, rad/s.
-    - `reference`: 18 numbers of the members of `Reference`: position, velocity, acceleration, jerk,
-      snap, m, s, world axes; yaw, yaw rate, yaw acceleration, rad, s.
-    - `data`: numbers of the controller, which it may change.
-    - `speeds`: the function writes the signed rotor speeds, rad/s, one for each rotor.
+    - `state`: 13 measured values in the order of `Odometry`: position (m), orientation (x, y, z,
+      w), linear velocity (m/s), angular velocity (rad/s).
+    - `reference`: 18 values in the order of `Reference`: position, velocity, acceleration, jerk and
+      snap in world axes (m, s); yaw, yaw rate and yaw acceleration (rad, s).
+    - `data`: values of the controller, which the function may change.
+    - `speeds`: signed rotor speeds, rad/s, one for each rotor; the function writes them.
 
-    The core does not call the function for a subclass with a `__call__` of its own, nor for an
-    object that holds the controller. Python calls these.
+    If a subclass overrides `__call__`, or another object wraps the controller, Python makes the
+    calls instead of the core.
 
     Parameters
     ----------
     function : numba CFunc or ctypes function
-        Made by ``numba.cfunc(CompiledController.signature)``, or by `prototype`.
+        Function made by ``numba.cfunc(CompiledController.signature)`` or by `prototype`.
     rate : float, default 500
         Calls per simulated second, 1/s.
     delay : float, default 0
-        Time from a call until its command reaches the motors, s.
+        Actuation delay: time from a call until its command reaches the motors, s.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class CompiledController:
     Raises
     ------
     InputError
-        If it is not a compiled function, or one with other arguments.
+        If the function is not compiled, or has other arguments.
     """
 
     signature: ClassVar[str] = f"void(float64{4 * ', CPointer(float64)'})"
@@ -62,18 +62,18 @@ class CompiledController:
 
     def __init__(self, function: Any, rate: float = RATE, delay: float = DELAY) -> None:
         self.rate, self.delay = rate, delay
-        self._made_of = function  # numba frees the code of a function without references
+        self._made_of = function  # numba frees the code of a function that has no references
         self._function = _find_function(function)
         self._data = np.empty(0)
-        self._width: Optional[int] = None  # until the first run
+        self._width: Optional[int] = None  # unknown until the first run
 
     def make_data(self, simulation: Any) -> Any:
-        """Return the numbers `data` at the start of a run, such as gains and the state of a filter.
+        """Return the values of `data` at the start of a run, such as gains and filter states.
 
         Parameters
         ----------
         simulation : Simulation or Vehicle
-            Vehicle of the run, as `Controller.reset` receives it.
+            Vehicle of the run, as passed to `Controller.reset`.
         """
         return ()
 
@@ -88,7 +88,7 @@ class CompiledController:
         Raises
         ------
         InputError
-            If the data are not numbers in one dimension.
+            If the data are not a one-dimensional array of numbers.
         """
         given = self.make_data(simulation)
         try:
@@ -104,7 +104,7 @@ class CompiledController:
 
     @property
     def compiled(self) -> Optional[CompiledController]:
-        """The controller itself, unless a subclass calls the function in a way of its own."""
+        """The controller itself; None if a subclass overrides `__call__`."""
         return self if type(self).__call__ is CompiledController.__call__ else None
 
     @property
@@ -114,7 +114,7 @@ class CompiledController:
 
     @property
     def data(self) -> np.ndarray:
-        """Numbers of the controller, shape (n,)."""
+        """Values of the controller, shape (n,)."""
         return self._data
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
@@ -131,10 +131,10 @@ class CompiledController:
 
 
 def find_compiled(controller: Any) -> Optional[CompiledController]:
-    """Return the compiled controller that the core may call in the place of a controller.
+    """Return the compiled controller that the core can call instead of `controller`, or None.
 
-    The class of the controller has the property `compiled`. The attributes of an object that it
-    holds do not count, because it may change the command.
+    Only the class of the controller may define the property `compiled`. If an object forwards the
+    attributes of another controller, they are ignored, because the object may change the command.
     """
     if not isinstance(getattr(type(controller), "compiled", None), property):
         return None
@@ -148,12 +148,12 @@ def is_compiled(given: Any) -> bool:
 
 
 def _find_address(function: Any) -> int:
-    """Return the address of a function of ctypes; 0: none."""
+    """Return the address of a ctypes function; 0 if it has none."""
     return ctypes.cast(function, ctypes.c_void_p).value or 0
 
 
 def _find_function(given: Any) -> Any:
-    """Return the function of ctypes in a compiled function; raises `InputError` if it differs."""
+    """Return the ctypes function of a compiled function; raise `InputError` if it is invalid."""
     if not is_compiled(given):
         raise InputError(
             f"controller: {shorten(given)} is not a compiled function. Compile it with "

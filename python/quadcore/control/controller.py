@@ -18,61 +18,62 @@ if TYPE_CHECKING:
 
 
 SENSED = "odom"
-"""Topic of the odometry that controllers receive."""
+"""Topic of the odometry that is passed to controllers."""
 
 
 class ControllerFunction(Protocol):
-    """A controller that is a function."""
+    """Interface of a controller that is a function."""
 
     def __call__(
         self, t: float, state: Odometry, reference: Any, /
     ) -> Union[npt.ArrayLike, SetPoint]:
-        """Return the rotor speeds, as `Controller` does."""
+        """Return the command, as for `Controller`."""
 
 
 class Controller(Protocol):
-    """Interface of controllers; a function ``controller(t, state, reference)`` suffices.
+    """Interface of controllers; a function ``controller(t, state, reference)`` is sufficient.
 
     `reset`, `close` and all attributes are optional.
 
     Attributes
     ----------
     rate : float, default 500
-        Calls per simulated second, 1/s; at most one call per step.
+        Calls per simulated second, 1/s. There is at most one call per step.
     fixed_rate : bool, default False
-        Whether `rate` must not change. Set it for a controller that counts its calls as time, such
-        as an autopilot in another process.
+        Whether `rate` must not change. Set it for a controller that measures time by counting its
+        calls, such as an autopilot in another process.
     delay : float, default 0
-        Time from a call until its command reaches the motors, s, rounded up to whole steps. The
-        command of the first call acts at once.
+        Actuation delay: time from a call until its command reaches the motors, s, rounded up to
+        whole steps. The command of the first call acts at once.
     log : dict of str to float, optional
-        Columns of the log: each value after each call. The names must not change in a flight.
+        Columns of the log, with their values after each call. The names must not change during a
+        flight.
     inner_loop : InnerLoop, optional
-        Converts a returned `AttitudeThrust`, `RatesThrust` or `WrenchThrust` to rotor speeds.
-        Default: an inner loop with default gains.
+        Inner loop that converts a returned `AttitudeThrust`, `RatesThrust` or `WrenchThrust` to
+        rotor speeds. Default: an inner loop with default gains.
     """
 
     def reset(self, simulation: Any, /) -> None:
-        """Prepare for a run; called before its first step.
+        """Prepare for a run; the simulation calls this method before the first step.
 
         Parameters
         ----------
         simulation : Simulation or Vehicle
-            Simulation that the controller is to command. In a study, a view of the vehicle: its
-            parameters and sensors.
+            Simulation to command. In a study, this is a view of the vehicle with its parameters and
+            sensors.
         """
 
     def close(self) -> None:
-        """End a run: stop processes, close sockets, remove temporary files.
+        """End a run: stop processes, close sockets, and remove temporary files.
 
-        Called once after every `reset`, however the run ends: also after an error, an interrupt or
-        the time limit of a study. It should return within 5 s.
+        The simulation calls this method once after every `reset`, even after an error, an interrupt
+        or the time limit of a study. It should return within 5 s.
         """
 
     def __call__(
         self, t: float, state: Odometry, reference: Any, /
     ) -> Union[npt.ArrayLike, SetPoint]:
-        """Return the command until the next call.
+        """Return the command that holds until the next call.
 
         A controller may read the simulation and publish on topics. It must not step, move or
         command the simulation.
@@ -84,23 +85,23 @@ class Controller(Protocol):
         state : Odometry
             Latest odometry message.
         reference : Reference or None
-            Value of the reference at `t`; `reference.at(times)` gives it at other times. None if
-            the run has no reference.
+            Value of the reference at time `t`; `reference.at(times)` returns it at other times.
+            None if the run has no reference.
 
         Returns
         -------
         array_like (n,), AttitudeThrust, RatesThrust or WrenchThrust
-            Signed rotor speeds as for `Simulation.command`, rad/s; or a set point for the inner
+            Signed rotor speeds as for `Simulation.command`, rad/s; or a set-point for the inner
             loop.
         """
 
 
 ControllerLike = Union[Controller, ControllerFunction, ControllerName]
-"""A controller as `Simulation.run` accepts it, for type checkers."""
+"""Types of controllers that `Simulation.run` accepts, for type checkers."""
 
 
 def check_callable(controller: Any) -> None:
-    """Raise `InputError` unless an object can be called as a controller."""
+    """Raise `InputError` if an object cannot be called as a controller."""
     form = "controller(t, state, reference)"
     if not callable(controller):
         raise InputError(
@@ -132,7 +133,7 @@ def has_fixed_rate(controller: Any) -> bool:
 def set_parameter(controller: Any, name: str, value: float) -> None:
     """Set the rate, the delay or a parameter of a controller.
 
-    The parameters of a user-defined controller are its public attributes that are numbers.
+    The parameters of a user-defined controller are its public numeric attributes.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Built-in controllers.
 
-Each function makes a controller, for example ``quadcore.controllers.geometric(kp_xy=4)``; its
-docstring lists the parameters. ``NAMES`` contains all names, ``FIRMWARE`` those of controllers with
-the gains of a firmware. `read_controller` reads a gains file.
+Each function makes a controller, for example ``quadcore.controllers.geometric(kp_xy=4)``. Its
+docstring lists the parameters. ``NAMES`` contains all names, and ``FIRMWARE`` the names of
+controllers with the gains of a firmware. `read_controller` reads a gains file.
 """
 
 from __future__ import annotations
@@ -35,18 +35,18 @@ from .user_parameters import list_parameters, make_controller
 
 
 def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = None) -> Any:
-    """Make a controller from a text as the option ``--controller`` takes it.
+    """Make a controller from a text in the format of the option ``--controller``.
 
     Parameters
     ----------
     text : str
-        ``NAME[:KEY=VALUE,...]`` with parameters, ``rate`` and ``delay`` as keys; a gains file
-        (.yaml); or your own controller as ``FILE.py[:NAME]`` or ``MODULE:NAME``, also with
-        ``:KEY=VALUE,...``. The library of a plugin in C++ is ``FILE.so``.
+        ``NAME[:KEY=VALUE,...]``, where KEY is a parameter, ``rate`` or ``delay``; a gains file
+        (.yaml); or your own controller as ``FILE.py[:NAME]`` or ``MODULE:NAME``, optionally with
+        ``:KEY=VALUE,...``. ``FILE.so`` is the library of a C++ plugin.
     vehicle : str, optional
-        Name of the robot in its URDF. The built-in gains for it become the defaults.
+        Name of the robot in its URDF. The built-in gains for this robot replace the defaults.
     values : mapping of str to float, optional
-        Rate, delay and parameters, which replace those of the text.
+        Rate, delay and parameters, which override those of the text.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
     Warns
     -----
     QuadcoreWarning
-        If the gains of the file belong to another vehicle.
+        If the gains in the file belong to another vehicle.
     """
     added = _find_added_reader(text)
     if added is not None:
@@ -90,29 +90,29 @@ def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = 
 
 
 def names_plugin(text: str) -> bool:
-    """Whether a text names the library of a plugin."""
+    """Whether a text names a plugin library."""
     return split_name(text).place.endswith(".so")
 
 
 def uses_plugin(text: str) -> bool:
-    """Whether a text names the library of a plugin, or a gains file for one."""
+    """Whether a text names a plugin library, or a gains file for a plugin."""
     return names_plugin(gains.read(text).law if names_gains_file(text) else text)
 
 
 class FileReader(NamedTuple):
-    """Reader of a kind of YAML file that describes a controller, other than gains files."""
+    """Reader for YAML files of another kind that describe a controller."""
 
     reads: Callable[[str], bool]
-    """Whether it reads a file."""
+    """Returns whether the reader can read a file."""
     make: Callable[[str], Any]
-    """Makes the controller of a file."""
+    """Makes the controller that a file describes."""
 
 
 _ADDED: List[FileReader] = []
 
 
 def add_reader(reader: FileReader) -> None:
-    """Add a reader of files for `parse`."""
+    """Register a reader of files for `parse`."""
     _ADDED.append(reader)
 
 
@@ -123,7 +123,7 @@ def _find_added_reader(text: str) -> Optional[FileReader]:
 
 
 def names_added_file(text: str) -> bool:
-    """Whether a text names a file that an added reader reads."""
+    """Whether a text names a file that a registered reader can read."""
     return _find_added_reader(text) is not None
 
 
@@ -137,7 +137,7 @@ def _names_yaml(text: str) -> bool:
 
 
 def split_own(text: str) -> Tuple[str, Dict[str, float]]:
-    """Split the text of a user-defined controller into its name and its given values."""
+    """Split the text of a user-defined controller into its name and the given values."""
     if names_gains_file(text):
         read = gains.read(text)
         timing = {"rate": read.rate, "delay": read.delay}
@@ -155,7 +155,7 @@ def split_own(text: str) -> Tuple[str, Dict[str, float]]:
 
 
 def read_own(text: str) -> Gains:
-    """Import a user-defined controller, and return its timing and its parameters.
+    """Import a user-defined controller, and return its timing and parameters.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def read_own(text: str) -> Gains:
     Raises
     ------
     InputError
-        As for `parse`, and if the text names an autopilot.
+        As for `parse`; also if the text names an autopilot.
     """
     if names_added_file(text):
         raise _core.InputError(f"{text}: this controller has no gains to tune. Name another.")
@@ -187,7 +187,7 @@ def _set_all(controller: Any, values: Mapping[str, float]) -> Any:
 
 
 def _make_own(text: str, values: Mapping[str, float]) -> Any:
-    """Import a user-defined controller and make it with parameters."""
+    """Import a user-defined controller, and make it with parameter values."""
     who = f"controller '{text}'"
     given = {**read_values(who, split_name(text).values), **values}
     timing: Dict[str, float] = {}
@@ -230,7 +230,7 @@ def _make_function(
 _MAKERS = {entry[0]: _make_function(*entry) for entry in _core.controllers()}
 NAMES: Tuple[ControllerName, ...] = tuple(_MAKERS)
 FIRMWARE: Tuple[ControllerName, ...] = ("crazyflie_pid", "mellinger", "px4")
-"""Controllers with the gains of a firmware, which suit its vehicles only."""
+"""Controllers with the gains of a firmware, which suit only the vehicles of this firmware."""
 __all__ = [
     "FIRMWARE",
     "NAMES",

@@ -1,4 +1,4 @@
-"""Errors of the state that a controller estimates: its attribute `estimate`."""
+"""Errors of the state that a controller estimates in its attribute `estimate`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..support.arguments import shorten
 from ..support.rotation import compute_rotation_vector
 
 QUANTITIES = ("position", "linear_velocity", "orientation")
-"""Attributes of an estimate, as those of the odometry; it may lack some of them."""
+"""Attributes of an estimate, named as those of the odometry; some of them may be missing."""
 
 
 class EstimateErrors:
@@ -20,10 +20,10 @@ class EstimateErrors:
     Parameters
     ----------
     controller
-        Controller. Its `estimate` has some of the attributes `QUANTITIES`, and perhaps the
+        Controller. Its `estimate` has some of the attributes `QUANTITIES`, and optionally the
         `covariance` of their errors in this order. Errors of position (m) and velocity (m/s) are in
-        world axes. That of the orientation is the rotation vector from the true to the estimated
-        one in frame axes, rad. Without an estimate at a call, the row is NaN.
+        world axes. The error of the orientation is the rotation vector from the true to the
+        estimated orientation in frame axes, rad. A call without an estimate gives a row of NaN.
     """
 
     def __init__(self, controller: Any) -> None:
@@ -34,10 +34,10 @@ class EstimateErrors:
     def rows(self) -> np.ndarray:
         """Errors of all `QUANTITIES`, then the normalised error; shape (calls, 10).
 
-        The normalised error is e' P^-1 e / n, with the error e of n components and its covariance
-        P. Its expectation is 1 if the covariance is right. NaN marks what the controller does not
-        estimate. Reference: Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications
-        to Tracking and Navigation, 2001, section 5.4.
+        For an error e with n components and covariance P, the normalised error is e' P^-1 e / n.
+        Its expectation is 1 if the covariance is correct. Quantities that the controller does not
+        estimate are NaN. Reference: Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with
+        Applications to Tracking and Navigation, 2001, section 5.4.
         """
         return np.array(self._rows).reshape(-1, 3 * len(QUANTITIES) + 1)
 

@@ -1,4 +1,4 @@
-"""User-defined controller that receives a view of the vehicle instead of the simulation."""
+"""User-defined controllers with a view of the vehicle instead of the simulation."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from .vehicle import Vehicle
 from .wrapped_controller import WrappedController
 
 PRIVILEGED = " (privileged)"
-"""Mark in the label of a controller that has access to the whole simulation."""
+"""Suffix of the label of a controller that has access to the whole simulation."""
 
 
 class FairController(WrappedController):
-    """Wrap a user-defined controller; its attributes are those of the wrapped one.
+    """Wrap a user-defined controller, and forward its attributes.
 
-    `reset` receives a `Vehicle`. The odometry gives access to the topics of sensors only.
+    `reset` passes a `Vehicle` to the controller. The odometry gives access only to the topics of
+    sensors.
     """
 
     reads_sensors_only = True
@@ -32,9 +33,10 @@ class FairController(WrappedController):
 
 
 def restrict(controller: Any) -> Any:
-    """Return a controller that receives a view of the vehicle.
+    """Return a controller that has access only to a view of the vehicle.
 
-    Built-in controllers need no view. Those in plugins cannot be restricted, see `PRIVILEGED`.
+    Built-in controllers need no restriction. Plugin controllers cannot be restricted; see
+    `PRIVILEGED`.
     """
     if isinstance(controller, (BuiltInController, PluginController)):
         return controller
@@ -42,5 +44,5 @@ def restrict(controller: Any) -> Any:
 
 
 def find_sensors(controller: Any, simulation: Any) -> Any:
-    """Return the object with the topics for a controller: a `Vehicle` shows only sensors."""
+    """Return the object with the topics of a controller; a `Vehicle` has only sensor topics."""
     return Vehicle(simulation) if getattr(controller, "reads_sensors_only", False) else simulation

@@ -1,9 +1,9 @@
-"""Gains files: a controller with its parameters for a vehicle.
+"""Gains files: the parameters of a controller for a vehicle.
 
-A gains file is a mapping in YAML with ``law`` (the name of the controller), ``vehicle``, ``rate``
-[1/s], ``delay`` [s], ``parameters`` by name and ``history``, which is for people. Only ``law`` is
-required. The built-in files are ``config/gains/VEHICLE/LAW.yaml``, where VEHICLE is the name of the
-robot in its URDF.
+A gains file is a YAML mapping with ``law`` (name of the controller), ``vehicle``, ``rate`` (1/s),
+``delay`` (s), ``parameters`` by name, and ``history``, which is only for the reader. Only ``law``
+is required. The built-in files are ``config/gains/VEHICLE/LAW.yaml``, where VEHICLE is the name of
+the robot in its URDF.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ class Gains:
     law : str
         Name of the controller.
     vehicle : str
-        Name of the robot that the gains are for; empty if unknown.
+        Name of the robot for which the gains are tuned; empty if unknown.
     rate : float
-        Calls per simulated second, 1/s; NaN for a plugin, which has none.
+        Calls per simulated second, 1/s; NaN for a plugin, which sets its own rate.
     delay : float
-        Time from a call until its command reaches the motors, s; NaN for a plugin.
+        Actuation delay, s; NaN for a plugin, which sets its own delay.
     parameters : mapping of str to float
-        Parameters of the controller; the others have their defaults.
+        Parameters of the controller. Missing parameters have their default values.
     history : mapping or list, optional
-        Origin of the gains, which is written but not read.
+        Origin of the gains, which is written but never used.
     """
 
     law: str
@@ -65,20 +65,20 @@ def read(path: Union[str, Path]) -> Gains:
     Raises
     ------
     InputError
-        If the file is missing or wrong; the message begins with ``FILE:LINE``.
+        If the file is missing or invalid; the message begins with ``FILE:LINE``.
     """
     return Gains(*_core.read_gains(str(path)))
 
 
 def write(gains: Gains, path: Union[str, Path]) -> None:
-    """Write a gains file; if that fails, an existing file stays as it is.
+    """Write a gains file atomically; if this fails, an existing file does not change.
 
     Parameters
     ----------
     gains : Gains
-        Contents.
+        Contents of the file.
     path : str or path
-        YAML file.
+        Path of the YAML file.
 
     Raises
     ------
@@ -113,13 +113,13 @@ def read_controller(path: Union[str, Path]) -> BuiltInController:
     Raises
     ------
     InputError
-        If the file is missing or wrong; the message begins with ``FILE:LINE``.
+        If the file is missing or invalid; the message begins with ``FILE:LINE``.
     """
     return read(path).make()
 
 
 def make_for_vehicle(name: str, vehicle: str) -> BuiltInController:
-    """Make a controller with the built-in gains of a vehicle, or else the defaults.
+    """Make a controller with the built-in gains of a vehicle, or with the default gains.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def make_for_vehicle(name: str, vehicle: str) -> BuiltInController:
 
 
 def find_shipped(name: str, vehicle: str) -> Optional[Path]:
-    """Return the path of the built-in gains of a vehicle, or None."""
+    """Return the path of the built-in gains of a vehicle; None if they do not exist."""
     return _list_shipped().get((vehicle, name))
 
 

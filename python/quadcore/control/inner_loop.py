@@ -1,4 +1,4 @@
-"""Inner loop: rotor speeds from an attitude, angular velocity or torque and a thrust."""
+"""Inner loop: rotor speeds from a thrust and an attitude, angular velocity or torque."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from .keywords import InnerLoopGains
 
 _ROUNDNESS = 1e-3
-"""Accepted difference between 1 and the length of a quaternion."""
+"""Accepted deviation of the norm of a quaternion from 1."""
 
 
 class AttitudeThrust(NamedTuple):
-    """Attitude and thrust that a controller may return instead of rotor speeds.
+    """Attitude and thrust, which a controller can return instead of rotor speeds.
 
     Attributes
     ----------
     orientation : array_like (4,)
         Desired orientation of the frame in the world, unit quaternion x, y, z, w.
     thrust : float
-        Desired thrust of all rotors along z of the frame, N.
+        Desired total thrust of the rotors along z of the frame, N.
     """
 
     orientation: npt.ArrayLike
@@ -39,14 +39,14 @@ class AttitudeThrust(NamedTuple):
 
 
 class RatesThrust(NamedTuple):
-    """Angular velocity and thrust that a controller may return instead of rotor speeds.
+    """Angular velocity and thrust, which a controller can return instead of rotor speeds.
 
     Attributes
     ----------
     angular_velocity : array_like (3,)
         Desired angular velocity of the frame, body axes, rad/s.
     thrust : float
-        Desired thrust of all rotors along z of the frame, N.
+        Desired total thrust of the rotors along z of the frame, N.
     """
 
     angular_velocity: npt.ArrayLike
@@ -54,17 +54,17 @@ class RatesThrust(NamedTuple):
 
 
 class WrenchThrust(NamedTuple):
-    """Torque and thrust that a controller may return instead of rotor speeds.
+    """Torque and thrust, which a controller can return instead of rotor speeds.
 
-    The allocation converts them to rotor speeds, see `Vehicle.allocation`. If the rotors cannot
-    exert them, roll and pitch are met first, then the nearest thrust, then yaw.
+    The control allocation converts them to rotor speeds; see `Vehicle.allocation`. If the request
+    is infeasible, roll and pitch have priority, then the thrust, then yaw.
 
     Attributes
     ----------
     torque : array_like (3,)
-        Desired torque of all rotors about the centre of mass, body axes, N m.
+        Desired total torque of the rotors about the centre of mass, body axes, N m.
     thrust : float
-        Desired thrust of all rotors along z of the frame, N.
+        Desired total thrust of the rotors along z of the frame, N.
     """
 
     torque: npt.ArrayLike
@@ -72,12 +72,12 @@ class WrenchThrust(NamedTuple):
 
 
 SetPoint = Union[AttitudeThrust, RatesThrust, WrenchThrust]
-"""Commands that an inner loop converts to rotor speeds."""
+"""Set-points that an inner loop converts to rotor speeds."""
 SET_POINTS = (AttitudeThrust, RatesThrust, WrenchThrust)
 
 
 class InnerLoop:
-    """Compute rotor speeds from an attitude, angular velocity or torque and a thrust."""
+    """Compute rotor speeds from a thrust and an attitude, angular velocity or torque."""
 
     def __init__(
         self,
@@ -91,7 +91,7 @@ class InnerLoop:
         self._loop: Optional[_core.InnerLoop] = None
 
     def leave(self) -> None:
-        """Start again at the next call, because other commands come in between."""
+        """Reset at the next call, because the controller returned another kind of command."""
         self._loop = None
 
     def speeds(
@@ -101,18 +101,18 @@ class InnerLoop:
         state: Any,
         wanted: SetPoint,
     ) -> np.ndarray:
-        """Return the rotor speeds until the next call.
+        """Return the rotor speeds that hold until the next call.
 
         Parameters
         ----------
         simulation : Simulation or Vehicle
-            Simulation that is commanded, or its view.
+            Simulation to command, or its view.
         period : float
             Time between two calls, s.
         state : Odometry
             Latest odometry message.
         wanted : AttitudeThrust, RatesThrust or WrenchThrust
-            Set point.
+            Set-point.
 
         Returns
         -------
@@ -122,7 +122,7 @@ class InnerLoop:
         Raises
         ------
         InputError
-            If the set point is not valid, or the inner loop does not support the vehicle.
+            If the set-point is invalid, or the inner loop does not support the vehicle.
         """
         target, thrust = _check_target(wanted)
         if self._loop is None:
@@ -136,7 +136,7 @@ class InnerLoop:
         return self._loop.rates(period, state, target, thrust)
 
     def __getstate__(self) -> Dict[str, Any]:
-        return {**self.__dict__, "_loop": None}  # the next call makes another
+        return {**self.__dict__, "_loop": None}  # the next call makes a new one
 
     def __repr__(self) -> str:
         inside = ", ".join(f"{name}={value:g}" for name, value in self.parameters.items())
@@ -157,7 +157,7 @@ InnerLoop.__doc__ = write_docstring(
 
 
 def _check_target(wanted: SetPoint) -> Any:
-    """Return target and thrust; raises `InputError` if they are not valid."""
+    """Return target and thrust; raise `InputError` if they are invalid."""
     name, count = type(wanted)._fields[0], 4 if isinstance(wanted, AttitudeThrust) else 3
     who = f"{type(wanted).__name__}: its"
     try:

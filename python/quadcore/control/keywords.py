@@ -1,6 +1,6 @@
-"""Names of the built-in controllers and references and of their parameters, for type checkers.
+"""Names and parameters of the built-in controllers and references, for type checkers.
 
-The core's tables define all of them; a test compares the two.
+The tables of the core define all of them; a test compares both.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Setup(TypedDict, total=False):
 
 
 class CommonModel(TypedDict, total=False):
-    """Parameters of the vehicle model inside every controller."""
+    """Parameters of the vehicle model in every controller."""
 
     lead: bool
     lead_time: float
@@ -59,7 +59,7 @@ class CommonModel(TypedDict, total=False):
 
 
 class VehicleModel(CommonModel, total=False):
-    """Parameters of the model inside a controller that can compensate drag and gyroscopics."""
+    """Parameters of the vehicle model of controllers with drag and gyroscopic compensation."""
 
     drag: bool
     gyroscopic: bool
@@ -254,7 +254,7 @@ class Ramp(Hover, total=False):
 
 
 class Circle(Hover, total=False):
-    """Parameters of the circle and the spiral."""
+    """Parameters of the circle and spiral references."""
 
     radius: float
     rate: float
@@ -263,7 +263,7 @@ class Circle(Hover, total=False):
 
 
 class Eight(Hover, total=False):
-    """Parameters of the figure of eight."""
+    """Parameters of the figure-of-eight reference."""
 
     length: float
     width: float
@@ -272,7 +272,7 @@ class Eight(Hover, total=False):
 
 
 class Waypoints(TypedDict, total=False):
-    """Parameters of the waypoints."""
+    """Parameters of the waypoint reference."""
 
     yaw: float
     yaw_rate: float
@@ -280,13 +280,13 @@ class Waypoints(TypedDict, total=False):
 
 
 class Series(Waypoints, total=False):
-    """Parameters of the series."""
+    """Parameters of the series reference."""
 
     tolerance: float
 
 
 class TakeoffLand(TypedDict, total=False):
-    """Parameters of take-off and landing."""
+    """Parameters of the take-off and landing reference."""
 
     x: float
     y: float

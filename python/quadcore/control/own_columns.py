@@ -1,4 +1,4 @@
-"""Columns of the log that a user-defined controller fills: its attribute `log`."""
+"""Log columns of a user-defined controller: the values in its attribute `log`."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ TOPIC = "controller"
 
 
 def list_names(controller: Any) -> List[str]:
-    """List the names in the mapping `log` of a controller; none without it.
+    """List the names in the mapping `log` of a controller; empty without this attribute.
 
     Raises
     ------
     InputError
-        If a name is no identifier.
+        If a name is not an identifier.
     """
     log = getattr(controller, "log", None)
     if not isinstance(log, Mapping):
@@ -34,12 +34,12 @@ def list_names(controller: Any) -> List[str]:
 
 
 class OwnColumns:
-    """Values that a controller writes into its `log` at each call.
+    """Values that a controller writes to its `log` at each call.
 
     Parameters
     ----------
     controller
-        Controller; the names in its `log` at this time are the columns.
+        Controller. The names that its `log` has now become the columns.
     """
 
     def __init__(self, controller: Any) -> None:
@@ -53,17 +53,17 @@ class OwnColumns:
         return [f"{TOPIC}.{name}" for name in self._names]
 
     def clear(self) -> None:
-        """Forget all values."""
+        """Discard all values."""
         self._times: List[float] = []
         self._rows: List[List[float]] = []
 
     def note(self, t: float) -> None:
-        """Note the present values after a call at a time [s].
+        """Record the current values after a call at time `t` (s).
 
         Raises
         ------
         InputError
-            If the names have changed, or a value is no number.
+            If the names have changed, or a value is not a number.
         """
         log = self._controller.log
         if list(log) != self._names:
@@ -83,7 +83,7 @@ class OwnColumns:
         Parameters
         ----------
         times : ndarray (rows,)
-            Ascending times, s, later than those of earlier calls.
+            Times in ascending order, s; later than the times of earlier calls of this method.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Controllers that are plugins in C++."""
+"""Controllers that are C++ plugins."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NAME = "controller"
 
 
 def find_library(library: str) -> Path:
-    """Return the file of a plugin, which is searched if it is named without a folder.
+    """Return the path of a plugin; a name without a folder is searched in the plugin folders.
 
     Raises
     ------
@@ -32,14 +32,14 @@ def find_library(library: str) -> Path:
 class PluginController:
     """Controller in a plugin, which a flight plan adds to its vehicle.
 
-    The plugin reads the topics ``odom`` and ``reference`` and publishes ``vel_cmd``.
+    The plugin reads the topics ``odom`` and ``reference``, and publishes ``vel_cmd``.
 
     Parameters
     ----------
     library : str
-        File of the plugin. Without a folder, it is searched in ``QUADCORE_PLUGIN_PATH``.
+        Path of the plugin. A name without a folder is searched in ``QUADCORE_PLUGIN_PATH``.
     tags : mapping of str to float
-        Values of its tags.
+        Values of its tags by name.
 
     Raises
     ------
@@ -55,11 +55,11 @@ class PluginController:
 
     @property
     def delay(self) -> float:
-        """The plugin delays its commands itself: NaN."""
+        """NaN, because the plugin delays its commands itself."""
         return math.nan
 
     def __call__(self, t: float, state: Any, reference: Any) -> Any:
-        """Refuse the call: the plugin runs within the simulation."""
+        """Raise `InputError`, because the plugin runs within the simulation."""
         raise InputError(
             f"controller '{self.file}' is a plugin, which this simulation does not have. Fly a "
             "FlightPlan with it, or name it in the URDF."

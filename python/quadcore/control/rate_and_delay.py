@@ -1,4 +1,4 @@
-"""Rate and delay of controllers: bounds and defaults from the table of the core."""
+"""Rate and delay of controllers: limits and defaults from the table of the core."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _ROWS = {row.name: row for row in _core.timing()}
 _WORDS = {"rate": "calls per second", "delay": "seconds"}
 
 RATE = float(_ROWS["rate"].default)
-"""Default calls per simulated second."""
+"""Default number of calls per simulated second, 1/s."""
 DELAY = float(_ROWS["delay"].default)
-"""Default time from a call until its command reaches the motors, s."""
+"""Default actuation delay, s."""
 
 
 def check_rate_or_delay(who: str, name: str, value: Any) -> float:
-    """Return a `rate` or `delay` as a number; raises `InputError` if it is out of range."""
+    """Return a `rate` or `delay` as a float; raise `InputError` if it is out of range."""
     if isinstance(value, Real) and _core.is_timing(name, float(value)):
         return float(value)
     raise _core.InputError(

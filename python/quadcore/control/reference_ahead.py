@@ -12,7 +12,7 @@ from ..support.arguments import shorten
 
 _LENGTHS = {"position": 3, "velocity": 3, "acceleration": 3, "jerk": 3, "snap": 3}
 _LENGTHS.update(yaw=1, yaw_rate=1, yaw_acceleration=1)
-"""Members of a reference in the order of their numbers in a message."""
+"""Members of a reference and their sizes, in the order of a message."""
 
 
 def list_fields(wanted: Any) -> Sequence[float]:
@@ -27,13 +27,13 @@ def list_fields(wanted: Any) -> Sequence[float]:
 
 
 class ReferenceSamples(SimpleNamespace):
-    """Reference at several times, or of several vehicles: arrays of the members of a `Reference`.
+    """Reference at several times, or for several vehicles, as arrays of its members.
 
     Attributes
     ----------
     position, velocity, acceleration, jerk, snap : ndarray (..., 3)
-        Position of the frame's origin in the world and its derivatives, m, s. Times of shape
-        ``(...)`` give this shape, n vehicles ``(n,)``.
+        Position of the frame's origin in the world and its derivatives, m, s. For times, ``(...)``
+        is their shape; for n vehicles, it is ``(n,)``.
     yaw, yaw_rate, yaw_acceleration : ndarray (...)
         Yaw and its derivatives, rad, s.
     """
@@ -49,12 +49,12 @@ class ReferenceSamples(SimpleNamespace):
 
     @classmethod
     def repeat(cls, wanted: Any, n: int) -> ReferenceSamples:
-        """Return the same reference for several vehicles, with the members that it has.
+        """Return the same reference for several vehicles, with all its members.
 
         Parameters
         ----------
         wanted : Reference
-            Reference at one time, or an object with the same members.
+            Reference at one time, or an object with some of its members.
         n : int
             Number of vehicles.
         """
@@ -64,7 +64,7 @@ class ReferenceSamples(SimpleNamespace):
 
 
 def sample_shape(shape: _core.ReferenceShape, times: Any) -> Any:
-    """Return a built-in reference at one or several times [s], as `sample_function`."""
+    """Return a built-in reference at one or several times (s), as `sample_function` does."""
     at = _check_times(times)
     if at.ndim == 0:
         return shape.at(float(at))
@@ -74,19 +74,20 @@ def sample_shape(shape: _core.ReferenceShape, times: Any) -> Any:
 
 
 def sample_function(function: Callable[[float], Any], times: Any) -> Any:
-    """Return a reference at one or several times.
+    """Return a user-defined reference at one or several times.
 
     Parameters
     ----------
     function
-        Reference of the user.
+        User-defined reference.
     times : float or array_like
         Simulation times, s.
 
     Returns
     -------
     Reference or ReferenceSamples
-        At one time, the value of the function. At several times, arrays of all its members.
+        For one time, the value of the function. For several times, arrays of the members that all
+        values have.
     """
     at = _check_times(times)
     if at.ndim == 0:
@@ -101,14 +102,14 @@ def sample_function(function: Callable[[float], Any], times: Any) -> Any:
 
 
 class ReferenceWithFuture:
-    """Value of a user-defined reference, with ``at``; everything else is that of the value."""
+    """Value of a user-defined reference with an additional attribute ``at``."""
 
     def __init__(self, value: Any, at: Callable[[Any], Any]) -> None:
         self._value = value
         self.at = at
 
     def __getattr__(self, name: str) -> Any:
-        if name == "_value" or name.startswith("__"):  # copy and pickle ask before it is set
+        if name == "_value" or name.startswith("__"):  # copy and pickle access it before it is set
             raise AttributeError(name)
         return getattr(self._value, name)
 
@@ -131,8 +132,8 @@ def add_future(reference: Callable[[float], Any]) -> Callable[[float], Any]:
     Parameters
     ----------
     reference
-        Built-in reference or function. Its values are passed on with the attribute ``at``, unless
-        they have one.
+        Built-in reference or function. Its values get the attribute ``at`` unless they already have
+        one.
     """
     at: Callable[[Any], Any] = getattr(reference, "at", None) or (
         lambda times: sample_function(reference, times)
@@ -155,7 +156,7 @@ def add_future(reference: Callable[[float], Any]) -> Callable[[float], Any]:
             return value
         try:
             value.at = at
-        except AttributeError:  # a tuple, or frozen
+        except AttributeError:  # the value is a tuple or frozen
             return ReferenceWithFuture(value, at)
         return value
 

@@ -1,6 +1,6 @@
 """Reference trajectories with all derivatives.
 
-Each function makes a reference, for example ``quadcore.references.spiral(radius=3)``; its docstring
+Each function makes a reference, for example ``quadcore.references.spiral(radius=3)``. Its docstring
 lists the parameters. ``NAMES`` contains all names.
 """
 
@@ -66,7 +66,7 @@ class ReferencePoint(Protocol):
 
 
 class ReferenceLike(Protocol):
-    """A function of time that returns a `Reference`, or an object with the same members."""
+    """Function of time that returns a `Reference`, or an object with the same members."""
 
     def __call__(self, t: float, /) -> ReferencePoint:
         """Return the reference at a time.
@@ -86,7 +86,7 @@ class Shape:
     name : str
         Name of the reference.
     rows : array_like (points, columns), optional
-        Points of a reference such as ``waypoints``: t, x, y, z[, yaw] in s, m, rad.
+        Points of a reference such as ``waypoints``: t (s), x, y, z (m), and optionally yaw (rad).
     **parameters
         Parameters of the reference in m, s, rad.
 
@@ -112,7 +112,7 @@ class Shape:
         self.shape = _core.ReferenceShape(name, self.parameters, self.rows)
 
     def __call__(self, t: float) -> _core.Reference:
-        """Return the reference at a time [s]."""
+        """Return the reference at a time (s)."""
         return self.shape.at(t)
 
     def at(self, times: Any) -> Any:
@@ -126,12 +126,12 @@ class Shape:
         Returns
         -------
         Reference or ReferenceSamples
-            For an array of times, arrays of the members of a `Reference`.
+            Reference at one time; for an array of times, arrays of its members.
         """
         return sample_shape(self.shape, times)
 
     def on(self, simulation: _core.Simulation) -> Shape:
-        """Return the reference with the defaults for a vehicle, such as the height of the ground.
+        """Return the reference with the defaults for a vehicle, such as the ground height.
 
         Parameters
         ----------
@@ -145,11 +145,11 @@ class Shape:
 
     @property
     def end(self) -> float:
-        """Time after which the reference rests, s; infinite if it never does."""
+        """Time after which the reference is at rest, s; infinite if it never is."""
         return self.shape.end
 
     def to_dict(self) -> Dict[str, Any]:
-        """Return name, parameters and rows by name."""
+        """Return the name, the parameters and the rows as plain values."""
         rows = None if self.rows is None else self.rows.tolist()
         return {"name": self.name, "parameters": self.parameters, "rows": rows}
 
@@ -166,7 +166,7 @@ def _make_shape(name: str, rows: Optional[np.ndarray], parameters: Any) -> Shape
 
 
 def start(simulation: Any, reference: ReferenceLike, spins: Sequence[float] = ()) -> State:
-    """Return the state of a vehicle that follows a reference exactly at the present time.
+    """Return the state of a vehicle that follows a reference exactly at the current time.
 
     Parameters
     ----------
@@ -191,13 +191,13 @@ def start(simulation: Any, reference: ReferenceLike, spins: Sequence[float] = ()
 
 
 def make_hover(pose: Sequence[float]) -> Shape:
-    """Make a reference that stays at a pose: x, y, z [m], roll, pitch, yaw [rad]."""
+    """Make a reference that stays at a pose: x, y, z (m), roll, pitch, yaw (rad)."""
     x, y, z, _, _, yaw = pose
     return Shape("hover", x=x, y=y, height=z, yaw=yaw)
 
 
 def sample_positions(reference: ReferenceLike, times: np.ndarray) -> np.ndarray:
-    """Return x, y, z [m] and yaw [rad] of a reference at times [s]; shape (n, 4)."""
+    """Return x, y, z (m) and yaw (rad) of a reference at some times (s), shape (n, 4)."""
     if isinstance(reference, Shape):
         return np.asarray(reference.shape.places(times))
     return np.array([_read_position(reference(t)) for t in times.tolist()], dtype=float).reshape(
@@ -221,14 +221,14 @@ _FILES = (".csv", ".mat", ".yaml", ".yml", ".bag")
 
 
 def parse(text: str) -> Shape:
-    """Make a reference from a text as the option ``--reference`` takes it.
+    """Make a reference from a text in the format of the option ``--reference``.
 
     Parameters
     ----------
     text : str
-        ``NAME[:KEY=VALUE,...]``; or a .csv, .mat, .bag or .yaml file of waypoints, also as
+        ``NAME[:KEY=VALUE,...]``; or a .csv, .mat, .bag or .yaml file of waypoints, optionally as
         ``waypoints:FILE[,KEY=VALUE,...]``. ``waypoints`` alone reads config/waypoints.yaml.
-        ``series:FILE`` reads a path that neither begins nor ends at rest.
+        ``series:FILE`` reads a path that need not start or end at rest.
 
     Raises
     ------
@@ -256,18 +256,18 @@ def parse(text: str) -> Shape:
 
 
 def read_rows(path: Path) -> npt.ArrayLike:
-    """Read rows t, x, y, z[, yaw] from a file.
+    """Read rows t (s), x, y, z (m) and optionally yaw (rad) from a file.
 
     Parameters
     ----------
     path
-        A .csv file with these columns, a log, a .yaml file with ``columns`` and ``rows``, a .mat
-        file with these vectors, or a bag of a flight.
+        .csv file with these columns, a log, .yaml file with ``columns`` and ``rows``, .mat file
+        with these vectors, or bag of a flight.
 
     Raises
     ------
     InputError
-        If the file is missing or has other contents.
+        If the file is missing, or does not contain such rows.
     """
     if path.suffix.lower() in (".csv", ".yaml", ".yml"):
         return _core.read_rows(str(path))

@@ -22,13 +22,13 @@ def make_controller(who: str, found: Any, values: Mapping[str, float]) -> Any:
     found
         Class, or an object that can be called as a controller.
     values
-        Parameters. The constructor of a class receives those that it accepts. The others become
+        Parameter values. The constructor of a class receives those that it accepts. The others set
         attributes, which must exist.
 
     Raises
     ------
     InputError
-        If there is no such parameter. Exceptions of the constructor pass through.
+        If a parameter does not exist. Exceptions of the constructor propagate.
     """
     rest = dict(values)
     made = found
@@ -42,7 +42,7 @@ def make_controller(who: str, found: Any, values: Mapping[str, float]) -> Any:
 
 
 def set_attribute(who: str, controller: Any, name: str, value: float) -> None:
-    """Set a parameter of a made controller; raises `InputError` if it does not have it."""
+    """Set a parameter of a controller object; raise `InputError` if it does not exist."""
     known = _list_attributes(controller)
     if name not in known:
         listed = {**_list_arguments(type(controller)), **known}
@@ -55,7 +55,7 @@ def set_attribute(who: str, controller: Any, name: str, value: float) -> None:
 
 
 def list_parameters(found: Any) -> Dict[str, float]:
-    """List the parameters of a class or object that have a number as default, by name."""
+    """List the parameters of a class or object that have a numeric default, by name."""
     named = {
         **_list_attributes(found),
         **(_list_arguments(found) if inspect.isclass(found) else {}),
@@ -68,8 +68,8 @@ def list_parameters(found: Any) -> Dict[str, float]:
 
 
 def _list_arguments(kind: type) -> Dict[str, Any]:
-    """List the keyword arguments of a constructor with their defaults."""
-    if kind.__module__ == "builtins":  # the class of a function
+    """List the keyword arguments of a constructor with their default values."""
+    if kind.__module__ == "builtins":  # type of a function
         return {}
     try:
         parameters = inspect.signature(kind).parameters.values()
@@ -80,7 +80,7 @@ def _list_arguments(kind: type) -> Dict[str, Any]:
 
 
 def _list_attributes(thing: Any) -> Dict[str, Any]:
-    """List the public attributes of a controller that are numbers, except its timing."""
+    """List the public numeric attributes of a controller, except for its timing."""
     owners = thing.__mro__ if inspect.isclass(thing) else (thing, *type(thing).__mro__)
     found: Dict[str, Any] = {}
     for owner in reversed(owners):
@@ -93,7 +93,7 @@ def _list_attributes(thing: Any) -> Dict[str, Any]:
 
 
 def _convert(value: float, default: Any) -> Any:
-    """Return a number in the type of its default: a flag, or a whole number if it is whole."""
+    """Convert a number to the type of its default: a bool, or an int if it has no fraction."""
     if isinstance(default, bool) and value in (0, 1):
         return bool(value)
     if isinstance(default, int) and float(value).is_integer():

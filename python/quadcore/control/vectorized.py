@@ -15,13 +15,13 @@ class VectorState(NamedTuple):
     """Measured states of n vehicles; the members are those of `Odometry`."""
 
     position: np.ndarray
-    """World axes, m; (n, 3)."""
+    """Positions in world axes, m; shape (n, 3)."""
     orientation: np.ndarray
-    """Frame in the world, unit quaternions x, y, z, w; (n, 4)."""
+    """Orientations of the frames in the world, unit quaternions x, y, z, w; shape (n, 4)."""
     linear_velocity: np.ndarray
-    """World axes, m/s; (n, 3)."""
+    """Velocities in world axes, m/s; shape (n, 3)."""
     angular_velocity: np.ndarray
-    """Frame axes, rad/s; (n, 3)."""
+    """Angular velocities in frame axes, rad/s; shape (n, 3)."""
 
     @classmethod
     def of_rows(cls, rows: np.ndarray) -> VectorState:
@@ -30,12 +30,12 @@ class VectorState(NamedTuple):
 
     @classmethod
     def of_one(cls, state: Any) -> VectorState:
-        """Return the state of one vehicle."""
+        """Convert the state of one vehicle."""
         return cls(*(np.array(getattr(state, name), dtype=float)[None] for name in cls._fields))
 
 
 def is_vectorized(controller: Any) -> bool:
-    """Whether a controller commands several vehicles at once: its attribute `vectorized`.
+    """Whether a controller commands several vehicles at once, by its attribute `vectorized`.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def is_vectorized(controller: Any) -> bool:
 
 
 def check_commands(answer: Any, n: int, width: int) -> np.ndarray:
-    """Return the commands of n vehicles; raises `InputError` unless the shape is (n, width)."""
+    """Return the commands of n vehicles; raise `InputError` if their shape is not (n, width)."""
     commands = np.asarray(answer, dtype=float)
     if commands.shape != (n, width):
         raise InputError(
@@ -60,25 +60,25 @@ def check_commands(answer: Any, n: int, width: int) -> np.ndarray:
 
 
 class CommandAll:
-    """Call of a vectorized controller for n vehicles on one reference.
+    """Function that calls a vectorized controller for n vehicles with the same reference.
 
     Parameters
     ----------
     controller
         Controller.
     reference : callable, optional
-        Function of time.
+        Reference as a function of time.
     n : int
         Number of vehicles.
     limits : ndarray (rotors,)
-        Speeds at which a rotor counts as saturated, rad/s.
+        Speeds at which the rotors count as saturated, rad/s.
 
     Attributes
     ----------
     calls : int
         Number of calls.
     saturated : ndarray (n,) of int
-        For each vehicle, number of commands in which a rotor is at its limit.
+        Number of commands of each vehicle in which at least one rotor is saturated.
     """
 
     def __init__(self, controller: Any, reference: Any, n: int, limits: np.ndarray) -> None:
@@ -88,7 +88,7 @@ class CommandAll:
         self.saturated = np.zeros(n, dtype=int)
 
     def __call__(self, t: float, rows: np.ndarray) -> np.ndarray:
-        """Return the commands, shape (n, rotors), for measured states, shape (n, 13)."""
+        """Return the commands (n, rotors) for measured states (n, 13) at time `t` (s)."""
         wanted = None
         if self._reference is not None:
             wanted = ReferenceSamples.repeat(self._reference(t), self._n)
@@ -100,7 +100,7 @@ class CommandAll:
 
 
 def command_one(controller: Any, t: float, state: Any, wanted: Any, width: int) -> Sequence[float]:
-    """Return the command of a vectorized controller for one vehicle."""
+    """Call a vectorized controller for a single vehicle, and return its command."""
     reference = None if wanted is None else ReferenceSamples.repeat(wanted, 1)
     row: Sequence[float] = check_commands(
         controller(t, VectorState.of_one(state), reference), 1, width

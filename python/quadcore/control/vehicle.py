@@ -1,4 +1,4 @@
-"""View of a vehicle for controllers: parameters, rotors and sensors, without the simulation."""
+"""View of a vehicle for controllers: parameters, rotors and sensors, but not the simulation."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ import numpy as np
 from .. import _core
 
 _SCENARIO_KINDS = ("fault", "wrench", "switch", "carried", "vector", "wind_speed", "shares")
-"""Kinds of topics that belong to the scenario: faults, pushes, payloads, wind."""
+"""Kinds of topics that belong to the scenario: faults, pushes, payloads and wind."""
 
 _SCENARIO_MODULES = ("wind", "push", "fault", "payload")
-"""Parts of the file names of plugins that belong to the scenario."""
+"""Parts of the file names of scenario plugins."""
 
 _SENSED_SHARES = "health"
 """Topic of kind ``shares`` that controllers may read: the detected loss of each rotor."""
 
 
 class Vehicle:
-    """Model of a vehicle and access to its sensors, as a controller receives it in a study.
+    """Model of a vehicle and access to its sensors, as passed to controllers in studies.
 
     Parameters
     ----------
     simulation : Simulation
         Simulation of the vehicle.
     sensed : Simulation, optional
-        Simulation with the topics, if it is another one. Default: `simulation`.
+        Simulation that contains the topics. Default: `simulation`.
 
     Attributes
     ----------
     model, world : Model, World
         Documents of the vehicle and its world.
     plugins : list of PluginInfo
-        Plugins of the vehicle, without those of the scenario.
+        Plugins of the vehicle, except for those of the scenario.
     dt : float
         Step of the simulation, s.
     mass : float
-        kg.
+        Mass of the vehicle, kg.
     inertia : ndarray (3, 3)
         Inertia about the centre of mass, frame axes, kg m^2.
     center_of_mass : ndarray (3,)
@@ -50,20 +50,20 @@ class Vehicle:
     rotor_count : int
         Number of rotors.
     hover_speed : ndarray (n,)
-        Commands at which the vehicle hovers level, signed, rad/s.
+        Signed commands at which the vehicle hovers level, rad/s.
     rotor_positions, rotor_axes : ndarray (n, 3)
-        Positions relative to the frame's origin, m, and unit vectors of the axes; frame axes. These
-        and the following arrays are in the order of the command.
+        Positions relative to the frame's origin, m, and unit vectors of the axes, both in frame
+        axes. These and the following arrays are in the order of the command.
     spins : ndarray (n,)
-        Direction of rotation about the axis and sign of the command, 1 or -1.
+        Direction of rotation about the axis, which is also the sign of the command; 1 or -1.
     thrust_coefficients, torque_coefficients : ndarray (n,)
-        Thrust, N s^2/rad^2, and torque, N m s^2/rad^2, per squared speed.
+        Thrust (N s^2/rad^2) and torque (N m s^2/rad^2) per squared speed.
     time_constants : ndarray (n,)
-        Time constants with which the rotors follow a command, s; 0 if they follow at once.
+        Time constants of the rotor speeds, s; 0 for rotors without lag.
     min_speeds, max_speeds : ndarray (n,)
         Limits of the commanded speeds, rad/s.
     allocation : ndarray (4, n)
-        Thrust along z, N, and torque about the centre of mass, N m, per squared speed.
+        Thrust along z (N) and torque about the centre of mass (N m) per squared speed (rad^2/s^2).
     """
 
     def __init__(self, simulation: Any, sensed: Any = None) -> None:
@@ -86,7 +86,7 @@ class Vehicle:
 
     @property
     def vehicle(self) -> Vehicle:
-        """The view itself, so that a controller may write ``x.vehicle`` in any flight."""
+        """The view itself, so that a controller can use ``x.vehicle`` in every flight."""
         return self
 
     @property
@@ -125,7 +125,7 @@ class Vehicle:
         Raises
         ------
         InputError
-            If the topic belongs to the scenario, or as for `Simulation.publish`.
+            If the topic belongs to the scenario; otherwise as for `Simulation.publish`.
         """
         check_topic(self, topic)
         _SENSED[self].publish(topic, values)
@@ -147,12 +147,12 @@ _SENSED: WeakKeyDictionary[Vehicle, Any] = WeakKeyDictionary()
 
 
 def unwrap(vehicle: Any) -> Any:
-    """Return the simulation behind a view; any other object unchanged."""
+    """Return the simulation of a view; other objects are returned unchanged."""
     return _SIMULATIONS[vehicle] if isinstance(vehicle, Vehicle) else vehicle
 
 
 def is_sensed(name: str, kind: str) -> bool:
-    """Whether controllers may read and publish a topic, because it is not part of a scenario."""
+    """Whether controllers may use a topic, because it does not belong to the scenario."""
     return kind not in _SCENARIO_KINDS or (kind == "shares" and name == _SENSED_SHARES)
 
 
@@ -167,7 +167,7 @@ def check_topic(vehicle: Vehicle, name: str) -> None:
 
 
 def _describe(simulation: Any) -> Dict[str, Any]:
-    """Return the arrays of a vehicle, or nothing if no plugin drives its rotors by speed."""
+    """Return the arrays of a vehicle; empty if no plugin drives its rotors by speed."""
     try:
         found = _core.modelled_vehicle(simulation, {}, [])
         hover = _core.hover_commands(simulation, [])

@@ -1,4 +1,4 @@
-"""Base of classes that wrap a user-defined controller."""
+"""Base class of wrappers for user-defined controllers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .controller import check_callable
 
 
 class WrappedController:
-    """Controller with the calls and attributes of a user-defined one.
+    """Controller that forwards its calls and attributes to a user-defined controller.
 
     Raises
     ------
@@ -23,11 +23,11 @@ class WrappedController:
 
     @property
     def compiled(self) -> Optional[CompiledController]:
-        """The compiled controller that the core may call in its place."""
+        """Compiled controller that the core can call instead; None if it does not exist."""
         return find_compiled(self._controller)
 
     def __getattr__(self, name: str) -> Any:
-        if name == "_controller":  # copy and pickle ask before it is set
+        if name == "_controller":  # copy and pickle access it before it is set
             raise AttributeError(name)
         return getattr(self._controller, name)
 
