@@ -9,10 +9,11 @@ and its equation of motion is the Euler-Lagrange equation
     B(q) qddot + C(q, qdot) qdot + g + G_a(q, omega) qdot + F(q, qdot, omega) qdot
         = zeta = K_zeta(q) Omega,   Omega = [omega_1^2, ..., omega_n^2]         (2.38), (2.40)
 
-`vehicle` contains the parameters of a vehicle, `kinematics` contains (2.3)-(2.9), and `matrices`
+`vehicle` contains the parameters of a vehicle, and `kinematics` contains (2.3)-(2.9). `matrices`
 contains one function for each matrix above. `model` contains the motors, the terms that the thesis
-omits, and the integration. Numbers in parentheses are equations of the thesis. Where function and
-printed equation differ, the docstring gives the reason. All units are SI units and radians.
+omits, and the integration. Numbers in parentheses are equations of the thesis. If a function
+differs from the printed equation, its docstring gives the reason. All quantities are in SI units,
+and angles are in radians.
 
 >>> import quadcore as qc
 >>> from quadcore.thesis.chapter2 import MathematicalModel, Vehicle

@@ -11,8 +11,8 @@ import numpy as np
 def rotation(eta: np.ndarray) -> np.ndarray:
     """Return R_321 (2.8), body to world: Rz(psi) Ry(theta) Rx(phi).
 
-    The printed thesis swaps the axis labels of (2.5) and (2.7), and its entry (2,1) is
-    c(theta) c(psi).
+    The thesis swaps the axis labels of (2.5) and (2.7), and prints the entry (2,1) as c(theta)
+    c(psi).
     """
     (sphi, stheta, spsi), (cphi, ctheta, cpsi) = np.sin(eta).tolist(), np.cos(eta).tolist()
     return np.array(
@@ -42,7 +42,7 @@ def euler_rates_to_body(eta: np.ndarray) -> np.ndarray:
     return _euler_rates_to_body(*eta.tolist())
 
 
-@lru_cache(maxsize=1)  # all matrices of one instant share it
+@lru_cache(maxsize=1)  # all matrices at one instant use the same result
 def _euler_rates_to_body(phi: float, theta: float, _: float) -> np.ndarray:
     sphi, cphi, stheta, ctheta = math.sin(phi), math.cos(phi), math.sin(theta), math.cos(theta)
     W = np.array([[1, 0, -stheta], [0, cphi, ctheta * sphi], [0, -sphi, cphi * ctheta]])
@@ -51,7 +51,7 @@ def _euler_rates_to_body(phi: float, theta: float, _: float) -> np.ndarray:
 
 
 def gradient_of_W(eta: np.ndarray) -> np.ndarray:
-    """dW/dphi, dW/dtheta and dW/dpsi; shape (3, 3, 3), the first index selects the angle."""
+    """Return dW/dphi, dW/dtheta and dW/dpsi, shape (3, 3, 3); the first index is the angle."""
     (sphi, stheta, _), (cphi, ctheta, _) = np.sin(eta).tolist(), np.cos(eta).tolist()
     by_phi = [[0, 0, 0], [0, -sphi, ctheta * cphi], [0, -cphi, -sphi * ctheta]]
     by_theta = [[0, 0, -ctheta], [0, 0, -stheta * sphi], [0, 0, -cphi * stheta]]
@@ -65,17 +65,17 @@ def skew(a: np.ndarray) -> np.ndarray:
 
 
 def generalise(eta: np.ndarray) -> np.ndarray:
-    """Return T(q), 6 x 6, which converts body force and torque to generalised forces.
+    """Return the 6 x 6 matrix T(q), which converts body force and torque to generalised forces.
 
         [f; tau] = T(q) [f_B; tau_B],   T = [[R, 0], [0, W^T]],   [V_B; nu] = T^T qdot
 
-    The thesis uses body torques as generalised torques: (2.19), (2.24), (2.36) and (2.42) have the
-    identity where W^T belongs. Virtual work demands it: tau_B . nu = tau_B . W etadot.
+    The thesis uses body torques as generalised torques: (2.19), (2.24), (2.36) and (2.42) contain
+    the identity instead of W^T. W^T follows from virtual work: tau_B . nu = tau_B . W etadot.
     """
     return _generalise(*eta.tolist())
 
 
-@lru_cache(maxsize=1)  # all matrices of one instant share it
+@lru_cache(maxsize=1)  # all matrices at one instant use the same result
 def _generalise(phi: float, theta: float, psi: float) -> np.ndarray:
     eta = np.array([phi, theta, psi])
     T = np.zeros((6, 6))

@@ -18,14 +18,14 @@ from .vehicle import Vehicle
 
 
 class Terms(NamedTuple):
-    """Terms that the equations of chapter 2 omit, each with a switch."""
+    """Terms that the equations of chapter 2 omit; each can be enabled."""
 
     motor_lag: bool = True
-    """I_R omegadot = kp (u - omega). Chapter 2 prescribes the speeds: omega = u."""
+    """I_R omegadot = kp (u - omega). In chapter 2 the speeds are prescribed: omega = u."""
     spin_up: bool = False
-    """- sum I_R omegadot in the torque: (2.11) has this term, the line after (2.13) drops it."""
+    """Torque - sum I_R omegadot, which (2.11) contains but the line after (2.13) drops."""
     dragged_rotors: bool = False
-    """Inertia of the rotors against rotations of the frame: omegadot = ... - a . nudot."""
+    """Relative motion of the rotors when the frame rotates: omegadot = ... - a . nudot."""
 
 
 THESIS = Terms()
@@ -68,7 +68,7 @@ class MathematicalModel:
         q, qdot : ndarray, shape (6,)
             Position of the centre of mass and Euler angles, and their rates.
         omega, omegadot : ndarray, shape (n,)
-            Rotor speeds, and their accelerations on a frame at rest.
+            Rotor speeds (rad/s), and their accelerations on a frame at rest (rad/s^2).
         """
         v = self.vehicle
         through_air = qdot - np.concatenate([v.wind, np.zeros(3)])
@@ -82,13 +82,13 @@ class MathematicalModel:
             W = euler_rates_to_body(q[3:])
             rest[3:] -= W.T @ ((v.rotor_inertia * omegadot / v.slow) @ v.axes)
             if self.terms.dragged_rotors:
-                polar = (v.rotor_inertia * v.axes.T) @ v.axes  # of the rotors that stay behind
+                polar = (v.rotor_inertia * v.axes.T) @ v.axes  # of the rotors, which stay behind
                 inertia[3:, 3:] -= W.T @ polar @ W
                 rest[3:] += W.T @ polar @ _bias(q, qdot)
         return np.linalg.solve(inertia, rest)
 
     def fly(self, duration: float, commands: Any, state: State, dt: float = 1e-3) -> Log:
-        """Simulate a flight with DOP853, with an error of 1e-9 or less.
+        """Simulate a flight with the method DOP853 and an error of at most 1e-9.
 
         Parameters
         ----------
@@ -97,20 +97,20 @@ class MathematicalModel:
         commands : ndarray (rows, 1 + n), or path
             As for `Simulation.run`. The first row holds from the start.
         state : State
-            Initial state, with rotor velocities in the order of the commands. Without motor lag the
-            commands replace these velocities.
+            Initial state, with rotor velocities in the order of the commands. Without motor lag,
+            the commands replace these velocities.
         dt : float
             Time between rows of the log, s.
 
         Returns
         -------
         Log
-            Log like that of an engine, without wrenches.
+            Log like that of an engine, but without wrenches.
 
         Raises
         ------
         FlightError
-            If the pitch comes close to 90 degrees, the singularity of the Euler angles.
+            If the pitch approaches 90 degrees, the singularity of the Euler angles.
         """
         v = self.vehicle
         n = len(v.arms)
@@ -133,7 +133,7 @@ class MathematicalModel:
         return self._log(time, rows)
 
     def step(self, dt: float, command: np.ndarray, state: State) -> State:
-        """Compute one step of the classical fourth-order Runge-Kutta method.
+        """Simulate one step with the classical fourth-order Runge-Kutta method.
 
         Parameters
         ----------
@@ -142,12 +142,12 @@ class MathematicalModel:
         command : ndarray, shape (n,)
             Commanded speeds during the step, rad/s.
         state : State
-            State at the beginning, as for `fly`; rotor angles have no effect.
+            State at the start of the step, as for `fly`; rotor angles have no effect.
 
         Returns
         -------
         State
-            State at the end, without rotor angles.
+            State at the end of the step, without rotor angles.
 
         Raises
         ------
@@ -170,7 +170,7 @@ class MathematicalModel:
     def _integrate(
         self, begin: float, end: float, y: np.ndarray, command: np.ndarray, wanted: np.ndarray
     ) -> Any:
-        """Return the states at times, and at the end of an interval with constant command."""
+        """Return the states at some times and at the end of an interval with constant command."""
         if end <= begin:
             return np.tile(y, (len(wanted), 1)), y
         from scipy.integrate import solve_ivp  # scipy is slow to import
@@ -182,7 +182,7 @@ class MathematicalModel:
             method="DOP853",
             rtol=1e-11,
             atol=1e-11,
-            max_step=0.1,  # s; over longer ones the interpolation for the log would be the coarser
+            max_step=0.1,  # s; over longer steps, the interpolation for the log is less accurate
             dense_output=True,
             events=_measure_uprightness,
         )
@@ -210,7 +210,7 @@ class MathematicalModel:
         return np.concatenate([xi, eta, xidot, etadot, speeds])
 
     def _lever(self, eta: np.ndarray, nu: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-        """Return the vector from frame origin to centre of mass, and its rate; world axes."""
+        """Return the vector from frame origin to centre of mass, and its rate, in world axes."""
         R, center = rotation(eta), self.vehicle.center_of_mass
         return R @ center, R @ (skew(nu) @ center)
 

@@ -1,4 +1,4 @@
-"""The mathematical model as an engine that controllers can command."""
+"""Mathematical model as an engine that controllers can command."""
 
 from __future__ import annotations
 
@@ -15,26 +15,27 @@ from .model import THESIS, MathematicalModel, Terms
 from .vehicle import Vehicle, find_air_plugin, list_command_order
 
 _UNFELT = ("libwind_plugin.so", "libpayload_plugin.so", "libfault_plugin.so")
-"""Plugins that change forces of other plugins, but not of the mathematical model."""
+"""Plugins that change forces of other plugins but have no effect on the mathematical model."""
 
 
 class Plant(Simulation):
     """`Simulation` with the equations of motion of chapter 2.
 
     Plugins receive commands and publish measurements as in any engine, with their rates and noise.
-    Their forces do not act. The forces of the model act instead, with the values of the tags.
+    Their forces do not act. Instead, the forces of the mathematical model act, with the values of
+    the plugin tags.
 
     Parameters
     ----------
     terms : Terms
         Terms to add to those of the thesis.
     **options
-        As for `Simulation`, without `engine`.
+        As for `Simulation`, except for `engine`.
 
     Raises
     ------
     InputError
-        If chapter 2 has no equation for the vehicle or the world.
+        If chapter 2 has no equations for the vehicle or the world.
     """
 
     def __init__(self, terms: Terms = THESIS, **options: Any) -> None:
@@ -59,7 +60,7 @@ class Plant(Simulation):
 
 
 class _Motion:
-    """Step of the model between states of the frame link."""
+    """Step of the model from one state of the frame link to the next."""
 
     def __init__(self, model: MathematicalModel, order: Any) -> None:
         self._model, self._order = model, order
@@ -79,7 +80,7 @@ class _Motion:
 
 
 def check(simulation: Simulation) -> None:
-    """Raise `InputError` if a force acts on the vehicle that chapter 2 does not have."""
+    """Raise `InputError` if a force acts on the vehicle that chapter 2 does not model."""
     world = simulation.world
     if world.ground_plane or world.obstacles or world.free_bodies:
         solid = "a ground plane" if world.ground_plane else "obstacles or free bodies"

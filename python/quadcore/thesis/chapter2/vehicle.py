@@ -1,4 +1,4 @@
-"""Parameters of a vehicle in chapter 2."""
+"""Parameters of a vehicle for the equations of chapter 2."""
 
 from __future__ import annotations
 
@@ -17,67 +17,67 @@ from .kinematics import skew
 
 @dataclass(frozen=True)
 class Vehicle:
-    """Parameters of the mathematical model, body axes, for n rotors in the order of a command.
+    """Parameters of the mathematical model in body axes, for n rotors in the order of a command.
 
     The equations of the thesis have four rotors along z of the body. Here each rotor has its own
-    arm and axis, so that the equations apply to any vehicle.
+    arm and axis, so the equations apply to any vehicle.
     """
 
     mass: float
-    """m, of the whole vehicle, kg."""
+    """Mass m of the whole vehicle, kg."""
     inertia: np.ndarray
-    """I_B (2.1), of the whole vehicle with its rotors, about its centre of mass, kg m^2; (3, 3)."""
+    """Inertia I_B (2.1) of the vehicle with its rotors about its centre of mass, kg m^2; (3, 3)."""
     center_of_mass: np.ndarray
-    """(2.2), from the origin of the frame link, m; (3,)."""
+    """Centre of mass (2.2) from the origin of the frame link, m; (3,)."""
     arms: np.ndarray
-    """d e_1 + h e_3 and so on of (2.33): rotors from the centre of mass, m; (n, 3)."""
+    """Rotor positions from the centre of mass, d e_1 + h e_3 and so on in (2.33), m; (n, 3)."""
     axes: np.ndarray
-    """e_3 of (2.22): unit vectors along the rotors' joints; (n, 3)."""
+    """Unit vectors along the rotor joints, e_3 in (2.22); (n, 3)."""
     rotor_inertia: np.ndarray
-    """I_R of a rotor about its axis, kg m^2; (n,)."""
+    """Inertia I_R of each rotor about its axis, kg m^2; (n,)."""
     gravity: np.ndarray
-    """Gravity in the world, m/s^2; (3,). In the thesis it is [0, 0, -g_z]."""
+    """Gravity in world axes, m/s^2; (3,). In the thesis it is [0, 0, -g_z]."""
     wind: np.ndarray
-    """Velocity of the air in the world, m/s; (3,). In the thesis it is zero."""
+    """Velocity of the air in world axes, m/s; (3,). In the thesis it is zero."""
     k: float
     """Thrust per squared speed (2.10), N s^2/rad^2."""
     b: float
     """Reaction torque per squared speed (2.11), N m s^2/rad^2; negative if it opposes the spin."""
     K_I: float
-    """Induced drag (2.28), N s/m."""
+    """Induced drag coefficient (2.28), N s/m."""
     K_T: float
-    """Translational drag, K_T1 of (2.29), N s/m."""
+    """Translational drag coefficient, K_T1 in (2.29), N s/m."""
     K_P: float
-    """Profile drag (2.30), N s/m."""
+    """Profile drag coefficient (2.30), N s/m."""
     K_par: float
-    """Parasitic drag (2.31), N s^2/m^2."""
+    """Parasitic drag coefficient (2.31), N s^2/m^2."""
     A_1c: float
-    """Blade flapping (2.26), rad."""
+    """Blade flapping coefficient (2.26), rad."""
     A_1s: float
-    """Blade flapping (2.26), rad."""
+    """Blade flapping coefficient (2.26), rad."""
     B_1: float
-    """Blade flapping (2.27), s/rad."""
+    """Blade flapping coefficient (2.27), s/rad."""
     B_2: float
-    """Blade flapping (2.27), s/rad."""
+    """Blade flapping coefficient (2.27), s/rad."""
     r: float
     """Rotor radius (2.26), m."""
     motor_gain: float
-    """Torque of a motor per speed error, as in the engines (A.4), N m s/rad."""
+    """Motor torque per speed error, as in the engines (A.4), N m s/rad."""
     joint_damping: np.ndarray
     """Friction of the rotor joints, N m s/rad; (n,)."""
     fastest: float
-    """Speed at which a command saturates, rad/s."""
+    """Limit of the commanded speed, rad/s."""
     slow: float
     """sim_slow, the ratio of the speed in the force models to the joint velocity (chapter 4)."""
 
     @classmethod
     def of(cls, simulation: Simulation) -> Vehicle:
-        """Read the parameters from model, world and plugins of a simulation.
+        """Read the parameters from the model, world and plugins of a simulation.
 
         Raises
         ------
         InputError
-            If chapter 2 has no equation for the vehicle.
+            If chapter 2 has no equations for the vehicle.
         """
         air, motor = (
             read_parameters(find_air_plugin(simulation)),
@@ -93,7 +93,7 @@ class Vehicle:
                 raise InputError("the mathematical model needs every rotor in each <rotorJoints>")
         order = list_command_order(simulation)
         joints = [simulation.model.joints[i] for i in order]
-        links = [simulation.model.links[1 + i] for i in order]  # the first is the frame
+        links = [simulation.model.links[1 + i] for i in order]  # the first link is the frame
         from scipy.spatial.transform import Rotation  # scipy is slow to import
 
         turns = [Rotation.from_euler("xyz", joint.rpy) for joint in joints]
@@ -126,14 +126,14 @@ class Vehicle:
         )
 
     def to_mat(self, path: Path) -> None:
-        """Write a MATLAB file with all parameters by name, for the scripts in `matlab/`."""
+        """Write all parameters by name to a MATLAB file, for the scripts in `matlab/`."""
         write_variables(path, {field.name: getattr(self, field.name) for field in fields(self)})
 
     @cached_property
     def levers(self) -> np.ndarray:
         """[1; S(r_i)], (n, 6, 3): wrench about the centre of mass per force at rotor i (2.33).
 
-        The printed equation has D x r, but the torque is r x D.
+        The printed equation contains D x r, but the torque is r x D.
         """
         return np.array([np.vstack([np.eye(3), skew(arm)]) for arm in self.arms])
 
@@ -145,14 +145,14 @@ class Vehicle:
 
     @cached_property
     def discs(self) -> np.ndarray:
-        """1 - a a^T, (n, 3, 3): projection to the plane of rotor i."""
+        """1 - a a^T, (n, 3, 3): projection onto the disc plane of rotor i."""
         return np.array([np.eye(3) - np.outer(axis, axis) for axis in self.axes])
 
     @cached_property
     def disc_drag(self) -> np.ndarray:
-        """Body wrench per body twist of D_i = -V_pi on each rotor, with the sign turned; (6, 6).
+        """Negative body wrench per body twist of the forces D_i = -V_pi on all rotors; (6, 6).
 
-        V_pi = disc_i (V_B + nu x r_i) is the velocity of a rotor in its plane. The printed
+        V_pi = disc_i (V_B + nu x r_i) is the velocity of a rotor in its disc plane. The printed
         equations (2.28)-(2.30) lack the minus sign.
         """
         drag: np.ndarray = np.einsum("iaj,ijk,ibk->ab", self.levers, self.discs, self.levers)
@@ -166,18 +166,18 @@ class Vehicle:
 
     @property
     def flaps(self) -> bool:
-        """Whether any coefficient of blade flapping is set."""
+        """Whether any blade flapping coefficient is nonzero."""
         return any((self.A_1c, self.A_1s, self.B_1, self.B_2))
 
 
 def find_air_plugin(simulation: Simulation) -> PluginInfo:
-    """Find the plugin with the force models of chapter 2, which reports the thrust."""
+    """Find the plugin with the force models of chapter 2, by its thrust."""
     found = [plugin for plugin in simulation.plugins if "thrust" in plugin.wrenches]
     return _find_only(found, "libaerodynamic_plugin.so")
 
 
 def find_motor_plugin(simulation: Simulation) -> PluginInfo:
-    """Find the plugin that drives the rotors, which receives the commands."""
+    """Find the motor plugin, which receives the commands."""
     commands = simulation.topics.get(simulation.command_topic)
     readers = commands.readers if commands else []
     found = [plugin for plugin in simulation.plugins if plugin.name in readers]
@@ -195,12 +195,12 @@ def _find_only(found: Sequence[PluginInfo], such_as: str) -> PluginInfo:
 
 
 def read_parameters(plugin: PluginInfo) -> Dict[str, str]:
-    """Read the effective parameters of a plugin, by name."""
+    """Read the effective parameters of a plugin by name."""
     return _Tags(plugin)
 
 
 class _Tags(Dict[str, str]):
-    """Values of the tags of a plugin; a missing tag raises `InputError`."""
+    """Tag values of a plugin by name; accessing a missing tag raises `InputError`."""
 
     def __init__(self, plugin: PluginInfo) -> None:
         super().__init__((entry.name, entry.value) for entry in plugin.parameters)
@@ -214,6 +214,6 @@ class _Tags(Dict[str, str]):
 
 
 def list_command_order(simulation: Simulation) -> List[int]:
-    """Return the joints in the order of a command: `rotor_velocity[list_command_order(s)]`."""
+    """Return the joint indices in command order: `rotor_velocity[list_command_order(s)]`."""
     driven = read_parameters(find_motor_plugin(simulation))["rotorJoints"].split()
     return [simulation.rotor_names.index(name) for name in driven]

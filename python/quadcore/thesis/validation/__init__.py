@@ -1,4 +1,4 @@
-"""Chapter 6.1 of the thesis: comparison of plant and mathematical model, with causes."""
+"""Chapter 6.1 of the thesis: comparison of plant and mathematical model, split by cause."""
 
 from .damping import Damping
 from .drags import DRAGS

@@ -1,4 +1,4 @@
-"""Flights of a study to watch: animation on the page, and logs with their model."""
+"""Flights of a study in an animation on the page, and as logs with their model."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .study import Study
 
 
 def write_drawn_flights(study: Study, folder: Path) -> List[Path]:
-    """Write the logs of `make_player`, their model and ``run.json``."""
+    """Write the logs of the flights in `make_player`, their model and ``run.json``."""
     remove_flights(folder)
     flights = _choose_flights(study)
     plan = study.experiment.plan
@@ -33,7 +33,7 @@ def write_drawn_flights(study: Study, folder: Path) -> List[Path]:
 
 
 def make_player(study: Study) -> Any:
-    """Make an animation of the model and the engines; empty if all flights failed."""
+    """Make an animation of the model and the engines; "" if all flights failed."""
     from ...report.player import PlayerFlight, make_section  # jinja2 is slow to import
 
     plan = study.experiment.plan
@@ -43,7 +43,7 @@ def make_player(study: Study) -> Any:
 
 
 def _choose_flights(study: Study) -> List[Tuple[str, Log]]:
-    """Choose the flights with the last drag that succeeded, with their names."""
+    """Return the successful flights with the last drag, and their names."""
     drag = study.drags[-1]
     cases = {"mathematical model": Case(MODEL, 1.0, drag)}
     for engine in study.engines:

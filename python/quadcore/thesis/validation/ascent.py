@@ -1,4 +1,4 @@
-"""Open-loop input: an ascent with rotations about all axes, one after the other."""
+"""Open-loop input: an ascent with successive rotations about all axes."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ import numpy as np
 from ..._core import InputError
 from ..chapter2 import Vehicle, matrices
 
-CLIMB = 1.04  # thrust per weight
+CLIMB = 1.04  # ratio of thrust to weight
 TILT, TURN = np.radians([2.0, 10.0])
 
-# Each move turns the vehicle by a multiple of TILT or TURN: a torque one way, then the other.
-# (start of the move and length of each half in s, axis, multiple). Out and back, out and back the
-# other way, so that the open loop, which drag makes unstable, has little to grow from.
+# Each move rotates the vehicle by a multiple of TILT or TURN, with a torque in one direction and
+# then in the other. An entry contains the start of the move and the duration of each half (s), the
+# axis and the multiple. The rotations alternate in direction, because drag makes the open loop
+# unstable and small angles limit its growth.
 PATTERN = (1, -2, 1, -1, 2, -1)
 MOVES = (
     *((t, 0.2, 0, turn) for t, turn in zip((2, 3, 4, 6, 7, 8), PATTERN)),
@@ -22,11 +23,11 @@ MOVES = (
 
 
 def make_ascent(vehicle: Vehicle) -> np.ndarray:
-    """Make rotor speeds that lift, tilt and turn a vehicle for ten seconds.
+    """Make rotor speeds that lift, tilt and yaw a vehicle for ten seconds.
 
     The signs of the speeds alternate along the command. The quadrotor of the thesis tilts by 2
-    degrees without drag, and by 43 degrees with all drags, because drag above the centre of mass
-    makes it unstable.
+    degrees without drag, and by 43 degrees with all drags. The reason is that drag above the centre
+    of mass makes it unstable.
 
     Returns
     -------
@@ -36,10 +37,10 @@ def make_ascent(vehicle: Vehicle) -> np.ndarray:
     Raises
     ------
     InputError
-        If such speeds cannot lift, tilt or turn the vehicle.
+        If such speeds cannot lift, tilt or yaw the vehicle.
     """
     spin = np.where(np.arange(len(vehicle.arms)) % 2 == 0, 1.0, -1.0)
-    # Lift and torques at level attitude per squared speed; sideways forces take care of themselves.
+    # Lift and torques per squared speed at level attitude; lateral forces are ignored.
     effect = matrices.K_zeta(vehicle, np.zeros(6), spin)[2:]
     _check_authority(effect)
     lift = -CLIMB * vehicle.mass * vehicle.gravity[2]
@@ -65,7 +66,7 @@ def make_ascent(vehicle: Vehicle) -> np.ndarray:
 
 
 def _check_authority(effect: np.ndarray) -> None:
-    """Raise `InputError` unless lift and torques are independent; rows of lift and torques."""
+    """Raise `InputError` unless the rows of `effect` (lift and torques) are independent."""
     for row, what in enumerate(("lift", "torque about x", "torque about y", "torque about z")):
         alone = np.eye(4)[row]
         squares, *_ = np.linalg.lstsq(effect, alone, rcond=None)

@@ -1,4 +1,4 @@
-"""Plots of the causes of the difference between plant and model."""
+"""Plots of the causes of the difference between the plant and the model."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from .output import size
 
 _DPI = 100
 _NO_DECAY = 1e-9  # 1/s
-_NO_DISTANCE = 1e-9  # m; what is less is rounding
-_COMMON = "0.55"  # colour of a link that belongs to several chains
+_NO_DISTANCE = 1e-9  # m; smaller differences are rounding errors
+_COMMON = "0.55"  # colour of a link that several chains share
 
 
 def draw_chains(chains: Sequence[Chain]) -> Drawing:
-    """Draw the share of each link in the chains of one drag."""
+    """Draw the effect of each link in the chains of one drag."""
     groups = _list_bars(chains)
     bars = sum(len(group) for group in groups.values())
     height = 0.9 + 0.19 * (bars + len(groups))
@@ -63,7 +63,7 @@ def draw_chains(chains: Sequence[Chain]) -> Drawing:
 
 
 def _list_bars(chains: Sequence[Chain]) -> Dict[str, List[Tuple[str, Link]]]:
-    """Group the links by their change, with the slowdown that they belong to, or all."""
+    """Group the links by their change; each has the label of its chain, or of all chains."""
     owners: Dict[Tuple[Any, Any], List[Chain]] = {}
     for chain in chains:
         for link in chain.links:

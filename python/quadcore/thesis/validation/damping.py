@@ -1,12 +1,13 @@
-"""Spurious damping of rotations in an engine: a bug of Gazebo 11.
+"""Spurious damping of rotations in an engine, which is a bug in Gazebo 11.
 
-The explicit gyroscopic torque of Gazebo acts on each propeller half a step late, after a rotation
-by W dt/2. This share of the torque, (Izz - Ixx) W w for a rate w across the axis, opposes w:
+Gazebo applies the explicit gyroscopic torque to each propeller half a step late, after a rotation
+by W dt/2. For a rate w across the axis, this misdirects a fraction of the torque (Izz - Ixx) W w so
+that it opposes w:
 
     decay = sum (Izz - Ixx) W^2 dt / (2 J)
 
-with the sum over the propellers, their speeds W and the inertia J of the whole vehicle. The damping
-needs no air and is not physical.
+The sum is over the propellers, W is their speed, and J is the inertia of the whole vehicle. The
+damping occurs without air and is not physical.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from ...simulation.simulation import Simulation
 from .experiment import Case, Experiment
 
 _RATE = 0.01  # rad/s
-_SETTLED = (0.1, 1.0)  # s; until the hinges of ODE have settled the rate drops once
+_SETTLED = (0.1, 1.0)  # s; when the hinges of ODE settle, the rate drops once
 
 
 class Damping(NamedTuple):
@@ -28,9 +29,9 @@ class Damping(NamedTuple):
 
     sim_slow: float
     formula: float
-    """Decay rate by the formula for the explicit gyroscopic torque, 1/s."""
+    """Decay rate from the formula for the explicit gyroscopic torque, 1/s."""
     measured: Dict[str, float]
-    """Measured decay rates by engine, 1/s; without engines that fail."""
+    """Measured decay rate of each engine, 1/s; engines with a failed flight are omitted."""
 
 
 def measure_damping(
@@ -53,7 +54,7 @@ def measure_damping(
             measured[engine] = _measure_decay(
                 _fall(experiment, case._replace(plant=engine)), *window
             )
-        except QuadcoreError:  # the rows of its flights say why
+        except QuadcoreError:  # the rows of its flights contain the reason
             continue
     return Damping(sim_slow, _compute_decay(_fall(experiment, case)), measured)
 

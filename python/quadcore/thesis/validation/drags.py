@@ -1,4 +1,4 @@
-"""Drags of the thesis and their tags of libaerodynamic_plugin."""
+"""Drags of the thesis, and their tags in libaerodynamic_plugin."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Difference from the mathematical model, split by cause.
 
 A chain leads from the plant of the thesis to its model. Each link changes one thing, and the
-difference across it is the share of this change. The differences add up to the whole difference, as
-vectors and at every time.
+difference across the link is the share of this change. The vector differences add up to the total
+difference at every time.
 """
 
 from __future__ import annotations
@@ -16,30 +16,30 @@ from .experiment import MODEL, Case, Flight
 
 
 class Link(NamedTuple):
-    """Step of a chain of models, from one to the next."""
+    """Step of a chain from one model to the next."""
 
     change: str
     begin: Case
     end: Case
     share: float
-    """Share in the whole difference, along its direction at the time of the chain, m."""
+    """Share of the total difference along its direction, at the time of the chain, m."""
     max: float
     """Maximum difference between the two flights, m."""
     rms: float
 
 
 class Chain(NamedTuple):
-    """The links from an engine at some sim_slow to the model."""
+    """Links from an engine with some sim_slow to the model."""
 
     drag: str
     sim_slow: float
     time: float
-    """Time of the maximum difference between the ends, s."""
+    """Time of the maximum difference between the ends of the chain, s."""
     distance: float
-    """Difference at this time, m: the sum of the shares."""
+    """Difference at this time, m; it is the sum of the shares."""
     links: List[Link]
     failure: str
-    """Reason for missing links."""
+    """Reason why links are missing; "" for success."""
 
 
 ORDER = ("gazebo11", "ode", "eigen")
@@ -52,8 +52,8 @@ ENGINES = {
 def list_stages(drag: str, sim_slow: float, plant: str) -> Dict[Case, str]:
     """List the flights of a chain from plant to model, each with the change before it.
 
-    The chain first removes the bugs of the plant at its slowdown, and then the slowdown. At full
-    speed the bug of Gazebo would be many times larger than in the slowed plant.
+    The chain first removes the bugs of the plant at its slowdown, and then the slowdown itself. At
+    full speed, the bug of Gazebo would have a much larger effect than in the slowed plant.
     """
     chain = {Case(plant, sim_slow, drag): ""}
     for engine in ORDER[1 + ORDER.index(plant) :]:
@@ -66,7 +66,7 @@ def list_stages(drag: str, sim_slow: float, plant: str) -> Dict[Case, str]:
 
 
 def make_chain(drag: str, sim_slow: float, plant: str, flights: Mapping[Case, Flight]) -> Chain:
-    """Split the difference between a plant and the model, once all flights are complete."""
+    """Split the difference between a plant and the model; all flights must be complete."""
     chain = list_stages(drag, sim_slow, plant)
     for case in chain:
         if flights[case].log is None:

@@ -1,4 +1,4 @@
-"""Flight of the experiment of chapter 6.1, with an engine or the model."""
+"""Flights of the experiment of chapter 6.1, with an engine or the model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .prescribed_speeds import compute_stiff_gain, fly_prescribed_speeds
 
 MODEL = "model"
 LAG, NO_LAG = "motors that lag", "motors without lag"
-# Variants of the model in addition to that of chapter 2.
+# Variants of the model, in addition to that of chapter 2.
 TERMS: Mapping[str, Terms] = {
     LAG: Terms(),
     NO_LAG: Terms(motor_lag=False),
@@ -42,13 +42,13 @@ class Case(NamedTuple):
     """Description of a flight."""
 
     plant: str
-    """Engine, or MODEL."""
+    """Name of an engine, or `MODEL`."""
     sim_slow: float = 1.0
     drag: str = "all"
-    """Drag that acts: one of DRAGS, "all" or "none"."""
+    """Drag that acts: a key of `DRAGS`, "all" or "none"."""
     variant: str = ""
     """Variant of an engine: "chapter2" (drag model) or "given speeds" (drag model and prescribed
-    rotor speeds). Variant of the model: a key of TERMS, or "" for chapter 2."""
+    rotor speeds). Variant of the model: a key of `TERMS`, or "" for chapter 2."""
 
 
 class Flight(NamedTuple):
@@ -57,23 +57,23 @@ class Flight(NamedTuple):
     case: Case
     log: Optional[Log]
     failure: str
-    """Reason for a missing log."""
+    """Reason why the log is missing; "" for success."""
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """Common parts of all flights; made by `Experiment.of`."""
+    """Settings that all flights share; use `Experiment.of` to make an experiment."""
 
     asked: Dict[str, Any]
-    """Given arguments: model, world, parameters, xacro_args, ignore, spawn."""
+    """Arguments of the caller: model, world, parameters, xacro_args, ignore and spawn."""
     plan: FlightPlan
-    """Flight of the plant, with commands at steps."""
+    """Flight of the plant, with the commands aligned to steps."""
     motor_lag: bool
     air: str
     """Name of the aerodynamic plugin."""
     motor: str
     rotors: Tuple[int, ...]
-    """Rotor of each number in a command."""
+    """Rotor index of each value in a command."""
 
     @classmethod
     def of(
@@ -95,7 +95,7 @@ class Experiment:
         Raises
         ------
         InputError
-            If an argument is wrong, or the mathematical model has no equation for the vehicle.
+            If an argument is invalid, or the mathematical model has no equations for the vehicle.
         """
         asked: Dict[str, Any] = {
             "model": model,
@@ -123,17 +123,17 @@ class Experiment:
 
     @property
     def commands(self) -> np.ndarray:
-        """Commands, (rows, 1 + n)."""
+        """Commands, shape (rows, 1 + n)."""
         assert self.plan.commands is not None
         return self.plan.commands
 
     def flight(self, case: Case, more: Optional[Mapping[str, Value]] = None) -> FlightPlan:
-        """Describe the flight of a case, from rest with the rotors at their first command.
+        """Make the plan of a case: the vehicle starts at rest, with rotors at their first command.
 
         Parameters
         ----------
         more
-            Additional values by PLUGIN.TAG.
+            Additional values by ``PLUGIN.TAG``.
         """
         parameters: Dict[str, Value] = dict(self.plan.parameters)
         for plugin in (self.air, self.motor):
@@ -154,7 +154,7 @@ class Experiment:
         )
 
     def fly(self, case: Case) -> Flight:
-        """Simulate a case; the result contains the reason of a failure."""
+        """Simulate a case; the result contains the reason for a failure."""
         try:
             return Flight(case, self._fly(case), "")
         except QuadcoreError as error:
@@ -184,14 +184,14 @@ class Experiment:
         return flight.fly()
 
     def drags(self) -> List[str]:
-        """List the drags that differ for this vehicle: "none", each single drag, "all"."""
+        """List the drags that differ for this vehicle: "none", each single drag, and "all"."""
         values = read_parameters(find_air_plugin(self.flight(Case("eigen")).simulation()))
         acting = [d for d, tags in DRAGS.items() if any(float(values[tag]) for tag in tags)]
         return ["none", *acting, "all"]
 
 
 def align_to_steps(commands: np.ndarray, dt: float) -> np.ndarray:
-    """Move each row to the first step that it affects; of several rows the last one applies."""
+    """Move each row to the first step that it affects; the last row of a step applies."""
     steps = np.ceil((commands[:, 0] - 1e-9) / dt)
     steps[steps < 0] = 0
     last = np.append(np.diff(steps) > 0, True)
@@ -200,7 +200,7 @@ def align_to_steps(commands: np.ndarray, dt: float) -> np.ndarray:
 
 
 def _order_rotors(simulation: Simulation) -> State:
-    """Return the present state, with rotors in the order of a command."""
+    """Return the current state with the rotors in the order of a command."""
     state = simulation.state.copy()
     state.rotor_velocity = state.rotor_velocity[list_command_order(simulation)]
     return state

@@ -20,19 +20,19 @@ _DPI = 100
 
 
 class Curves(NamedTuple):
-    """Data of the figures of one drag."""
+    """Data for the figures of one drag."""
 
     drag: str
     engines: List[str]
     sim_slow: List[float]
     time: np.ndarray
     model: np.ndarray
-    """States of the model, (rows, 12)."""
+    """States of the model, shape (rows, 12)."""
     plants: Dict[Tuple[str, float], np.ndarray]
 
 
 def collect_curves(study: Study, drag: str) -> Curves:
-    """Collect the flights of one drag, without failed flights.
+    """Collect the flights of one drag; failed flights are omitted.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def collect_curves(study: Study, drag: str) -> Curves:
 
 
 def draw(what: Curves, kind: str) -> Drawing:
-    """Draw a figure of chapter 6 with one column per engine and one line per slowdown."""
+    """Draw a figure of chapter 6 with a column per engine and a line per slowdown."""
     title, columns, labels, scale, error, least = KINDS[kind]
     title = f"{title}, drag: {what.drag}"
     numbers = thesis_figures(what.drag, kind, what.sim_slow)
@@ -65,7 +65,7 @@ def draw(what: Curves, kind: str) -> Drawing:
                 continue
             shown = (flown - what.model if error else flown)[:, columns] * scale
             label = f"{n:g}" if i else f"sim_slow {n:g}"
-            # Curves that lie on each other: the later are the thinner.
+            # Later curves are thinner, so that coinciding curves remain visible.
             width = 1.2 + 1.2 * (len(what.sim_slow) - 1 - i)
             for axes, curve in zip(column, shown.T):
                 axes.plot(what.time, curve, color=colour, linewidth=width, label=label)
@@ -97,7 +97,7 @@ def draw_commands(commands: np.ndarray, duration: float) -> Drawing:
 
 
 def list_figures(study: Study) -> Dict[str, Tuple[Callable[..., Drawing], Tuple[Any, ...]]]:
-    """List every figure of a study by name, as a function and its arguments."""
+    """List every figure of a study by name, as a function with its arguments."""
     result: Dict[str, Tuple[Callable[..., Drawing], Tuple[Any, ...]]] = {
         "commands": (draw_commands, (study.experiment.commands, study.experiment.plan.duration)),
     }
@@ -124,11 +124,11 @@ def _make_panels(
     width: float = 0.0,
     above: float = 0.85,
 ) -> Any:
-    """Make rows x columns panels of a height in inches, with space for title and legend."""
+    """Make rows x columns panels of height `each` (inches), with space for title and legend."""
     width, below = width or max(2.6 * columns + 1.2, 6), 0.45
     height = above + each * rows + below
     figure = make_figure(title, width, height, _DPI)
-    # Fixed margins: matplotlib's automatic layouts differ from version to version.
+    # Fixed margins, because matplotlib's automatic layouts differ between versions.
     margins = {
         "left": 1.1 / width,
         "right": 1 - 0.2 / width,

@@ -1,4 +1,4 @@
-"""A study as tables, figures and one page."""
+"""Results of a study as tables, figures and a page."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _REPORTED = ("max", "rms")
 
 
 def write_tables(study: Study, directory: Path) -> List[Path]:
-    """Write all numbers to an existing folder; equal studies give bit-identical files.
+    """Write all results to an existing folder; equal studies give bit-identical files.
 
-    Flights to watch are written too; only the tables are returned. Figures of another study in
-    this folder are removed.
+    The function also writes flights for animations, but returns only the tables. It removes the
+    figures of an earlier study in this folder.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
 
 
 def write_figure(name: str, picture: Drawing, directory: Path) -> None:
-    """Write a figure of `figures.list_figures`.
+    """Write a figure listed by `figures.list_figures`.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def write_report(study: Study, pictures: Mapping[str, Drawing], directory: Path)
     Parameters
     ----------
     pictures
-        Drawings by the names of `figures.list_figures`; may be empty.
+        Drawings by the names of `figures.list_figures`; possibly empty.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def write_report(study: Study, pictures: Mapping[str, Drawing], directory: Path)
 
 
 def to_json(study: Study) -> Dict[str, Any]:
-    """Return all numbers of a study as lists and dictionaries; angles in rad."""
+    """Return the results of a study as lists and dictionaries, with angles in rad."""
     experiment = study.experiment
     asked = dict(experiment.asked)
     spawn = asked.pop("spawn")
@@ -125,7 +125,7 @@ def to_json(study: Study) -> Dict[str, Any]:
 
 
 def size(value: float) -> str:
-    """Return a length with three digits, or fewer if it is tiny."""
+    """Format a length with three significant digits, or one if it is small."""
     if value == 0:
         return "0"
     return f"{value:#.3g}".rstrip(".") if abs(value) >= 1e-3 else f"{value:.0e}"

@@ -1,10 +1,10 @@
 """Engine ``eigen`` with prescribed rotor speeds, as in chapter 2.
 
-In chapter 2 the speeds are known functions of time. It omits the reaction of the frame to changes
-of the speeds, and the inertia of the rotors against rotations of the frame. A rigid body approaches
-this motion as a limit. Between steps each rotor gets its prescribed speed, without a reaction on
-the frame. Within a step a stiff motor holds this speed relative to the frame. A motor of twice the
-stiffness halves the difference from the model.
+In chapter 2 the speeds are known functions of time. The chapter omits the reaction of the frame to
+speed changes, and the inertia of the rotors against rotations of the frame. A rigid body approaches
+this motion as a limit. Between steps, each rotor is set to its prescribed speed without a reaction
+on the frame. Within a step, a stiff motor holds this speed relative to the frame. If the stiffness
+doubles, the difference from the model halves.
 """
 
 from __future__ import annotations
@@ -18,31 +18,31 @@ from ...simulation.simulation import Simulation
 from ..chapter2 import Vehicle
 from ..chapter2.vehicle import list_command_order
 
-# The rate of a stiff motor times the step; Runge-Kutta is stable below 2.78.
+# Rate of a stiff motor times the step; Runge-Kutta is stable below 2.78.
 STIFFNESS = 2.0
 
 
 def compute_stiff_gain(vehicle: Vehicle, dt: float) -> float:
-    """Return the motor gain for a simulation of `fly_prescribed_speeds`, N m s/rad."""
+    """Return the motor gain for the simulation in `fly_prescribed_speeds`, N m s/rad."""
     return float(STIFFNESS * vehicle.rotor_inertia.min() / dt)
 
 
 def speeds(vehicle: Vehicle, commands: np.ndarray, times: np.ndarray, lag: bool) -> np.ndarray:
-    """Return the speeds on a frame at rest: I_R omegadot = kp (u - omega) - c omega.
+    """Return the rotor speeds on a frame at rest: I_R omegadot = kp (u - omega) - c omega.
 
     Parameters
     ----------
     commands : ndarray, shape (rows, 1 + n)
-        Commands; the rotors start at the speeds of the first row, which is at t = 0.
+        Commands. The rotors start at the speeds of the first row, which is at t = 0.
     times : ndarray, shape (m,)
-        Times from 0 on, s.
+        Times since the start, s.
     lag : bool
-        Whether motors lag; without lag, omega = u.
+        Whether the motors lag; otherwise omega = u.
 
     Returns
     -------
     ndarray, shape (m, n)
-        Speeds, rad/s.
+        Rotor speeds, rad/s.
     """
     due = np.searchsorted(commands[:, 0], times + 1e-9, side="right") - 1
     u = np.clip(commands[:, 1:], -vehicle.fastest, vehicle.fastest)
@@ -79,17 +79,17 @@ class PrescribedSpeeds(Pilot):
         self.rate = 1 / dt
         middles = dt * (np.arange(count_steps(duration, dt)) + 0.5)
         self._omega = speeds(vehicle, commands, middles, lag)
-        # What a stiff motor must be asked for to hold a speed against friction.
+        # Command of a stiff motor that holds the speed against friction.
         self._asked = self._omega * (1 + vehicle.joint_damping / compute_stiff_gain(vehicle, dt))
 
     def reset(self, simulation: Simulation) -> None:
-        """Start with the present rotor speeds."""
+        """Start with the current rotor speeds."""
         self._order = list_command_order(simulation)
         before = np.vstack([simulation.state.rotor_velocity[self._order], self._omega[:-1]])
         self._steps = zip(self._asked, self._omega - before)
 
     def speeds(self, simulation: Simulation) -> np.ndarray:
-        """Set the rotors to the speeds at the middle of the step."""
+        """Set the rotors to their speeds at the middle of the step."""
         asked, jump = next(self._steps)
         if jump.any():
             state = simulation.state.copy()
@@ -112,7 +112,8 @@ def fly_prescribed_speeds(
     Parameters
     ----------
     simulation : Simulation
-        Simulation in engine ``eigen``, at rest, with `compute_stiff_gain` and sim_slow 1.
+        Simulation in the engine ``eigen``, at rest, with the gain of `compute_stiff_gain` and a
+        sim_slow of 1.
     """
     pilot = PrescribedSpeeds(vehicle, commands, lag, duration, simulation.dt)
     rows = Rows(simulation, list_columns(simulation))

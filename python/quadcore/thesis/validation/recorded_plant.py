@@ -31,14 +31,14 @@ MODELS = {"chapter 2": Terms(), "chapter 2, as a gyrostat": GYROSTAT}
 
 
 class Replay(NamedTuple):
-    """Difference of a recording from a simulation with the same start and commands."""
+    """Difference between a recording and a simulation with the same start and commands."""
 
     plant: str
-    """Name from `MODELS`, or engine."""
+    """Key of `MODELS`, or name of an engine."""
     difference: Optional[DifferenceSizes]
-    """Recording minus simulation."""
+    """Recording minus simulation; None if the simulation failed."""
     failure: str
-    """Reason for a missing difference."""
+    """Reason why the difference is missing; "" for success."""
 
 
 def replay(
@@ -47,23 +47,23 @@ def replay(
     commands: Union[str, Path, np.ndarray, None],
     engines: Sequence[str],
 ) -> Iterator[Replay]:
-    """Simulate a recorded flight with the mathematical model and with engines.
+    """Simulate a recorded flight with the mathematical model and several engines.
 
     Parameters
     ----------
     plan
-        Vehicle and world; the initial state is that of the recording.
+        Vehicle and world. The initial state is that of the recording.
     recording
         Log file: .csv, .mat or .bag.
     commands
-        Table or file of commands. Default: topic vel_cmd of the recording.
+        Table or file of commands. Default: topic ``vel_cmd`` of the recording.
     engines
         Names of the engines.
 
     Raises
     ------
     InputError
-        If the recording or the commands are wrong, or do not fit the vehicle.
+        If the recording or the commands are invalid, or do not match the vehicle.
     """
     log = Log.of_file(recording)
     vehicle = replace(plan, engine="eigen").simulation()
@@ -105,7 +105,7 @@ def _read_commands(
 
 
 def _read_state(log: Log, state: State) -> State:
-    """Return the first state of a recording, without rotor angles, which have no effect."""
+    """Return the first state of a recording without rotor angles, which have no effect."""
     rotors = log.rotor_velocity.shape[1]
     if rotors != len(state.rotor_velocity):
         raise InputError(
@@ -132,7 +132,7 @@ def _replay(name: str, log: Log, fly: Callable[[], Log]) -> Replay:
 
 
 def write_table(rows: Sequence[Replay], rotors: int) -> bytes:
-    """Write all differences as CSV: plant, state, unit, maximum, rms, final, failure."""
+    """Write all differences as CSV: plant, state, unit, maximum, RMS, final, failure."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["plant", "state", "unit", "max", "rms", "final", "failure"])

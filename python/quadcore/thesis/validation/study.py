@@ -1,4 +1,4 @@
-"""Study: all flights of the experiment, in parallel, and their comparison."""
+"""Study: all flights of the experiment in parallel, and their comparison."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .thesis_figures import SIM_SLOW
 
 
 class Row(NamedTuple):
-    """Comparison of two flights."""
+    """Comparison of a flight with a reference flight."""
 
     case: Case
     difference: Optional[DifferenceSizes]
     steepest: float
-    """Maximum roll or pitch, rad."""
+    """Maximum roll or pitch angle, rad."""
     failure: str
-    """Reason for a missing difference."""
+    """Reason why the difference is missing; "" for success."""
 
 
 class Study(NamedTuple):
@@ -38,9 +38,9 @@ class Study(NamedTuple):
     """Comparison of each engine, sim_slow and drag with the mathematical model."""
     chains: List[Chain]
     left_out: List[Row]
-    """Comparison of the model with additional terms and the model, for the last drag."""
+    """Comparison of the model with additional terms to the model, for the last drag."""
     slowed: List[Row]
-    """Comparison of engine eigen with itself at full speed."""
+    """Comparison of the engine eigen to itself at full speed."""
     damping: List[Damping]
 
 
@@ -52,7 +52,7 @@ def run_study(
     processes: Optional[int] = None,
     progress: Optional[Callable[[int, int], None]] = None,
 ) -> Study:
-    """Simulate every engine, sim_slow and drag, and compare with the model.
+    """Simulate every engine, sim_slow and drag, and compare the flights with the model.
 
     Parameters
     ----------
@@ -63,14 +63,14 @@ def run_study(
     processes
         Number of processes. Default: one per core.
     progress
-        Called as progress(flights_done, flights_total).
+        Function called as progress(flights_done, flights_total).
 
     Raises
     ------
     InputError
         If a drag does not act on the vehicle.
     KeyboardInterrupt
-        With the attribute `study`, in which missing flights are marked.
+        On Ctrl-C. The attribute `study` contains the results so far and marks the missing flights.
     """
     acting = experiment.drags()
     for drag in drags or ():
@@ -121,12 +121,12 @@ def _fly(
     processes: Optional[int],
     progress: Optional[Callable[[int, int], None]],
 ) -> None:
-    # The model is slow: it goes first, so that no core waits for it at the end.
+    # The model is slow, so its flights start first and no core idles at the end.
     cases = sorted(flights, key=lambda case: case.plant != MODEL)
 
     def take(index: int, flight: Union[Flight, QuadcoreError]) -> None:
         case = cases[index]
-        if isinstance(flight, QuadcoreError):  # its process died
+        if isinstance(flight, QuadcoreError):  # the process of the flight died
             flight = Flight(case, None, str(flight))
         flights[case] = flight
 

@@ -1,4 +1,4 @@
-"""Figures of chapter 6.1 of the thesis, and their counterparts here."""
+"""Figures in chapter 6.1 of the thesis, and the corresponding figures here."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
-# Slow-downs: the text says 1, 8 and 18, the captions of the figures 1, 8 and 10.
+# Slowdowns: the text states 1, 8 and 18; the captions of the figures state 1, 8 and 10.
 SIM_SLOW = (1.0, 8.0, 10.0, 18.0)
 
 
@@ -15,12 +15,12 @@ class FigureKind(NamedTuple):
 
     title: str
     columns: slice
-    """Columns of the states."""
+    """Columns of the states to draw."""
     labels: Tuple[str, str, str]
     scale: float
     error: bool
     least: float
-    """Minimum range of the axis, in its unit; smaller ranges would show rounding only."""
+    """Minimum range of the axis in its unit; smaller ranges would show only rounding errors."""
 
 
 _ANGLES = (r"$\phi$ (deg)", r"$\theta$ (deg)", r"$\psi$ (deg)")
@@ -37,13 +37,14 @@ KINDS: Mapping[str, FigureKind] = {
     "velocity": FigureKind("Velocity", slice(6, 9), _SPEEDS, 1, False, 1e-3),
     "rates": FigureKind("Rates of the attitude", slice(9, 12), _RATES, _DEGREES, False, 1e-3),
 }
-# Five figures for each, from 6.1 on. At which slow-down the drags act alone is not said.
+# There are five figures for each drag, starting at 6.1. The thesis does not state the slowdown of
+# figures with a single drag.
 _ALONE = ("profile", "parasitic", "translational", "induced")
 _TOGETHER = SIM_SLOW[:3]
 
 
 def thesis_figures(drag: str, kind: str, sim_slow: Sequence[float]) -> str:
-    """Return the numbers of the figures in the thesis that show the same, or "".
+    """Return the numbers of the corresponding figures in the thesis; "" without any.
 
     >>> thesis_figures("profile", "error", [1])
     '6.2'
