@@ -1,4 +1,4 @@
-"""Files of logs and commands: one module for each format, and the table of their suffixes."""
+"""Files of logs and commands: a module for each format, and a table of their suffixes."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ class Format(NamedTuple):
     """Functions to read and write one file format."""
 
     read_commands: Callable[[Path, Sequence[str]], Table]
-    """read_commands(path, names): reads the columns of these names, unchecked."""
+    """read_commands(path, names): read the columns with these names, without checks."""
     write_log: Callable[[Path, Sequence[str], np.ndarray, _Wrenches, Sequence[str]], None]
-    """write_log(path, columns, table, wrenches, ignored): writes a log completely or not at all.
-    Columns TOPIC.FIELD follow those of the state."""
+    """write_log(path, columns, table, wrenches, ignored): write a complete log, or nothing. Columns
+    ``TOPIC.FIELD`` follow those of the state."""
     read_log: Callable[[Path], LogRows]
-    """read_log(path): reads a file of write_log."""
+    """read_log(path): read a file written by write_log."""
     log_file: Callable[[Path, Sequence[str], Sequence[str], Sequence[str]], LogFile]
-    """log_file(path, columns, terms, ignored): makes a recorder that writes during the flight."""
+    """log_file(path, columns, terms, ignored): make a recorder that writes during the flight."""
 
 
 FORMATS: Dict[str, Format] = {
@@ -41,14 +41,14 @@ FORMATS: Dict[str, Format] = {
 
 
 def find_format(path: Path, what: str) -> Format:
-    """Return the format that the suffix of a file selects.
+    """Return the format that the suffix of a path selects.
 
     Parameters
     ----------
     path
         File to read or write.
     what
-        "logs are written to" or "commands are read from", for the error.
+        Start of the error message: "logs are written to" or "commands are read from".
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Bags of ROS 1 and ROS 2 with the topics of the node, and with the rows of the log."""
+"""Bags of ROS 1 and ROS 2 with the topics of the node and the rows of the log."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from .rows import (
 from .whole_log import DeferredLogFile
 
 LOG = "/quadcore/log"
-"""Topic of complete rows. Its first label contains the columns, the others the ignored parts."""
+"""Topic of the log rows. Its first label contains the columns, the others the ignored parts."""
 
 ROS2 = ".ros2"
-"""Suffix of the folders of ROS 2 bags that quadcore writes; it reads those of other names, too."""
+"""Suffix of ROS 2 bags that quadcore writes; it can also read folders with other names."""
 
-_ON_A_WALL = 1e6  # s; times beyond are of a clock on the wall, and counted from the bag's first
+_ON_A_WALL = 1e6  # s; later times are wall-clock times, and count from the start of the bag
 
 
 def read_commands(path: Path, names: Sequence[str]) -> Table:
@@ -42,7 +42,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
     Raises
     ------
     InputError
-        If no topic or several topics match, or messages have another length.
+        If no topic or several topics match, or a message has another length.
     """
     with open_bag(path) as bag:
         found = [c for c in bag.connections if c.topic.endswith("vel_cmd") and c.msgtype == ARRAY]
@@ -53,7 +53,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
                 "ends in vel_cmd, std_msgs/Float64MultiArray."
             )
         start = bag.start_time if bag.start_time > _ON_A_WALL * 1e9 else 0
-        rows: Dict[int, np.ndarray] = {}  # of those of one time the last counts
+        rows: Dict[int, np.ndarray] = {}  # of messages with the same time, the last one is kept
         for time, message in read_messages(bag, found):
             speeds = np.asarray(message.data, dtype=float)
             if len(speeds) != len(names) - 1:
@@ -61,23 +61,23 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
                     f"{path}: {topics[0]}: a message of {len(speeds)} numbers, but the model has "
                     f"{len(names) - 1} rotors. Record {', '.join(names[1:])}."
                 )
-            # The first message may lie a nanosecond late, see write_log.
+            # The first message may be a nanosecond late; see write_log.
             rows[max(0, time - start - (time == 1))] = speeds
         table = np.array([[time / 1e9, *speeds] for time, speeds in sorted(rows.items())])
     return Table(table.reshape(-1, len(names)), lambda row: f"{path}: message {1 + row}", "")
 
 
 def read_path(path: Path) -> np.ndarray:
-    """Read the path of a vehicle: t, x, y, z and yaw; shape (rows, 5)."""
+    """Read the path of a vehicle: t (s), x, y, z (m) and yaw (rad); shape (rows, 5)."""
     rows = read_log(path).rows
     yaw = np.unwrap(to_yaw(rows[:, 4:8]))
     return np.column_stack([rows[:, :4], yaw])
 
 
 def read_log(path: Path) -> LogRows:
-    """Read a bag that `write_log` or the ROS node wrote.
+    """Read a bag written by `write_log` or by the ROS node.
 
-    A bag of the node gives one row for each time with both true odometry and rotor speeds.
+    A bag of the node gives one row for each time that has both true odometry and rotor speeds.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def _read_node_rows(path: Path, bag: Any) -> Tuple[List[str], np.ndarray, List[s
                 f"t = {stamp / 1e9:g} s. Record flights of different vehicles separately."
             )
         rows.append([
-            stamp // step * (step / 1e9),  # as simulations count it
+            stamp // step * (step / 1e9),  # as the simulation computes times
             *_list_vector(pose.position), *_list_vector(q), q.w,
             *_list_vector(twist.linear), *_list_vector(twist.angular),
             *joints[stamp].velocity,
@@ -161,8 +161,8 @@ def _read_clock(bag: Any) -> List[int]:
 
 
 def read_messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
-    """Read the messages of some connections with their times, ns."""
-    if not found:  # which would be all
+    """Read the messages of some connections with their times (ns)."""
+    if not found:  # rosbags would read all connections
         return
     for connection in () if is_ros2(bag.path) else found:
         written = sorted(bag.indexes[connection.id], key=lambda e: (e.chunk_pos, e.offset))
@@ -184,7 +184,7 @@ def is_ros2(path: Path) -> bool:
 
 @contextlib.contextmanager
 def open_bag(path: Path) -> Iterator[Any]:
-    """Open a bag; raises `InputError` if rosbags is missing or the file is damaged."""
+    """Open a bag; raise `InputError` if rosbags is missing or the bag is damaged."""
     with require_package("a bag", "rosbags", "bag"):
         from rosbags import rosbag1, rosbag2
     Reader = rosbag2.Reader if is_ros2(path) else rosbag1.Reader
@@ -197,7 +197,7 @@ def open_bag(path: Path) -> Iterator[Any]:
         raise
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except Exception as error:  # a broken file makes anything
+    except Exception as error:  # a damaged file can raise any exception
         raise InputError(f"{path}: is no bag that can be read: {error}") from error
 
 
@@ -208,23 +208,23 @@ def write_log(
     wrenches: Mapping[str, np.ndarray],
     ignored: Sequence[str],
 ) -> None:
-    """Write the messages that the node would publish, and each row of the log on `LOG`."""
+    """Write the messages that the node would publish, and each row of the log to `LOG`."""
     with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Writer
     with _name_temporary(path) as part, atomic_write(path) as stream:
-        writer = Writer(part)  # to a name only
+        writer = Writer(part)  # Writer accepts only a path
         writer.set_compression(Writer.CompressionFormat.LZ4)
         writer.compressor = _compress
         with writer as bag:
             _write_rows(bag, Messages(), columns, table, wrenches, ignored)
         with part.open("rb") as written:
-            import shutil  # is slow to import
+            import shutil  # slow to import
 
             shutil.copyfileobj(written, stream)
 
 
 def _compress(data: bytes) -> bytes:
-    """Compress a part of a bag with the options of rosbag, which reads no others."""
+    """Compress a part of a bag with the options of rosbag, which cannot read others."""
     from lz4 import frame
 
     packed: bytes = frame.compress(
@@ -244,24 +244,24 @@ def write_ros2_log(
     wrenches: Mapping[str, np.ndarray],
     ignored: Sequence[str],
 ) -> None:
-    """Write the same messages as `write_log` to a new folder, a ROS 2 bag."""
+    """Write the messages of `write_log` to a new ROS 2 bag, which is a folder."""
     with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag2 import Writer
     if path.exists():
         raise InputError(f"{path}: exists already. Name a new folder.")
     part = name_temporary(path)
-    # Newer versions of rosbags ask for the version of the format: that of ROS 2 Humble.
+    # Newer versions of rosbags require the format version, here that of ROS 2 Humble.
     options: Dict[str, Any] = {"version": 8} if "version" in signature(Writer).parameters else {}
     try:
         part.mkdir()
-        with Writer(part / path.name, **options) as bag:  # whose name is that of the files in it
+        with Writer(part / path.name, **options) as bag:  # the files in the folder get its name
             _write_rows(bag, Messages(2), columns, table, wrenches, ignored)
         os.rename(part / path.name, path)
     except OSError as error:
         raise make_write_error(path, error) from error
     finally:
         with interrupts.hold_signals():
-            import shutil  # is slow to import
+            import shutil  # slow to import
 
             shutil.rmtree(part, ignore_errors=True)
 
@@ -286,13 +286,13 @@ def _write_rows(
         row = np.hstack([table[i : i + 1], *acting])[0] if acting else state
         whole = (LOG, state[0], messages.make_array(row, layout))
         for topic, time, data in [*of_node.at(state), whole]:
-            # A bag of ROS 1 has no message at time 0.
+            # A ROS 1 bag cannot contain a message at time 0.
             bag.write(connections[topic], max(1, round(time * 1e9)), data)
 
 
 @contextlib.contextmanager
 def _name_temporary(path: Path) -> Iterator[Path]:
-    """Return the name of a temporary file, unique to this process."""
+    """Provide the path of a temporary file that is unique to this process."""
     part = name_temporary(path, ".rows")
     with contextlib.suppress(FileNotFoundError):
         part.unlink()
@@ -308,7 +308,7 @@ def _name_temporary(path: Path) -> Iterator[Path]:
 def make_log_file(
     path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
 ) -> DeferredLogFile:
-    """Make a recorder; raises `InputError` if the package rosbags is missing."""
+    """Make a recorder; raise `InputError` if the package rosbags is missing."""
     Messages()
     write = write_ros2_log if path.suffix.lower() == ROS2 else write_log
     return DeferredLogFile(write, path, columns, terms, ignored)

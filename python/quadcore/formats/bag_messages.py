@@ -1,4 +1,4 @@
-"""Messages of ROS 1 or ROS 2 as bytes, made from rows of a log."""
+"""Messages of ROS 1 or ROS 2 as bytes, made from the rows of a log."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ _CLOCK = "rosgraph_msgs/msg/Clock"
 _ODOMETRY = "nav_msgs/msg/Odometry"
 _JOINTS = "sensor_msgs/msg/JointState"
 _TF = "tf2_msgs/msg/TFMessage"
-_LEAST_VARIANCE = 1e-12  # as the node has it
-_SLOW_RATE = 50  # 1/s, of clock, tf and joint states in a bag of ROS 1, as the node has it
+_LEAST_VARIANCE = 1e-12  # same as in the node
+_SLOW_RATE = 50  # 1/s; rate of clock, tf and joint states in a ROS 1 bag, as in the node
 
 
 class NodeMessages(NamedTuple):
-    """Messages of the node: types by topic, and at(row) -> topic, time in s and bytes."""
+    """Messages of the node: types by topic, and at(row), which yields topic, time (s) and bytes."""
 
     kinds: Dict[str, str]
     at: Any
 
 
 class Messages:
-    """Serialiser of messages.
+    """Serialiser and deserialiser of messages.
 
     Parameters
     ----------
     ros
-        Version of ROS, 1 or 2. The names of the messages are the same in both.
+        Version of ROS, 1 or 2. Both versions use the same message names.
 
     Raises
     ------
@@ -45,8 +45,8 @@ class Messages:
         self.store = get_typestore(Stores.ROS2_HUMBLE if ros == 2 else Stores.ROS1_NOETIC)
         self._serialise = self.store.serialize_cdr if ros == 2 else self.store.serialize_ros1
         self.deserialise = self.store.deserialize_cdr if ros == 2 else self.store.deserialize_ros1
-        self._sequence = () if ros == 2 else (0,)  # of a header, which ROS 2 does not have
-        if _TF not in self.store.types:  # which is no type of common_msgs
+        self._sequence = () if ros == 2 else (0,)  # sequence number, which ROS 2 lacks
+        if _TF not in self.store.types:  # it is not a type of common_msgs
             self.store.register(
                 get_types_from_msg("geometry_msgs/TransformStamped[] transforms", _TF)
             )
@@ -59,11 +59,11 @@ class Messages:
         return self._type("std_msgs/msg/MultiArrayLayout")(dimensions, 0)
 
     def make_array(self, numbers: np.ndarray, layout: Any) -> bytes:
-        """Make an array of numbers."""
+        """Make a message with an array of numbers."""
         return self._bytes(self._type(ARRAY)(layout, np.array(numbers, dtype=float)), ARRAY)
 
     def make_node_messages(self, columns: Sequence[str]) -> NodeMessages:
-        """Return the converter of rows with these columns to the messages of the node."""
+        """Return the converter from rows with these columns to the messages of the node."""
         rotors = sum("." not in column for column in columns) - len(log_columns(0))
         topics: Dict[str, List[int]] = {}
         for i, column in enumerate(columns):
@@ -81,15 +81,15 @@ class Messages:
             fields = [columns[i].partition(".")[2] for i in places if not _is_stamp(columns[i])]
             kinds[f"/{topic}"] = _ODOMETRY if fields == _FIELDS else ARRAY
             layouts[topic] = self.make_layout([", ".join(fields)], len(fields))
-        sent: Dict[str, float] = {}  # stamps
-        counted = -1  # periods of the slow messages
+        sent: Dict[str, float] = {}  # last stamp of each topic
+        counted = -1  # number of periods of the slow messages
 
         def at(row: np.ndarray) -> Iterator[Tuple[str, float, bytes]]:
             nonlocal counted
             stamp = self._stamp(row[0])
             yield "/ground_truth/odometry", row[0], self._odometry(stamp, row[1:14], [0.0] * 4)
             count = int(row[0] * _SLOW_RATE + 1e-6)
-            if count != counted or not self._sequence:  # ROS 2 gets them with each row
+            if count != counted or not self._sequence:  # ROS 2 bags contain them for each row
                 counted = count
                 yield "/clock", row[0], self._bytes(self._type(_CLOCK)(stamp), _CLOCK)
                 yield "/tf", row[0], self._transform(stamp, row[1:8])
@@ -127,7 +127,7 @@ class Messages:
         return self._type(f"geometry_msgs/msg/{kind}")(*numbers)
 
     def _odometry(self, stamp: Any, state: np.ndarray, variances: Sequence[float]) -> bytes:
-        """Make an odometry message from x ... qw, vx ... wz."""
+        """Make an odometry message from the values x ... qw, vx ... wz."""
         pose = self._type("geometry_msgs/msg/Pose")(
             self._vector(state[:3], "Point"), self._vector(state[3:7], "Quaternion")
         )

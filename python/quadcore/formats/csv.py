@@ -1,4 +1,4 @@
-"""CSV files: one row per line below a header."""
+"""CSV files: a header, followed by one line per row."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from .rows import (
     list_wrench_columns,
 )
 
-_LARGEST = 10**9  # bytes; of commands more than three hours at 1 kHz
-_PIECE = 4096  # rows
+_LARGEST = 10**9  # bytes; commands for more than three hours at 1 kHz
+_PIECE = 4096  # rows that are written at once
 _REMARK = log_remark(["?"]).strip("\n?")
 
 
 def read_commands(path: Path, names: Sequence[str]) -> Table:
-    """Read columns of numbers; the header must contain exactly these names.
+    """Read columns of numbers; the header must match these names exactly.
 
     Raises
     ------
     InputError
-        If the header or a number is wrong; the message begins with ``FILE:LINE``.
+        If the header or a number is invalid; the message begins with ``FILE:LINE``.
     """
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     if header.replace(" ", "") != ",".join(names):
@@ -45,12 +45,12 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
 
 
 def read_log(path: Path) -> LogRows:
-    """Read a file of `write_log`.
+    """Read a file written by `write_log`.
 
     Raises
     ------
     InputError
-        If the header or a number is wrong; the message begins with ``FILE:LINE``.
+        If the header or a number is invalid; the message begins with ``FILE:LINE``.
     """
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     columns = header.split(",")
@@ -70,7 +70,7 @@ def read_log(path: Path) -> LogRows:
 def _read_numbers(
     path: Path, lines: Sequence[str], first: int, columns: Sequence[str]
 ) -> np.ndarray:
-    """Read rows of numbers; `first` is the number of the first line."""
+    """Read rows of numbers; `first` is the line number of the first row."""
     values = array.array("d")
     for number, line in enumerate(lines, start=first):
         cells = line.split(",")
@@ -86,7 +86,7 @@ def _read_numbers(
 
 
 def _is_plain(text: str) -> bool:
-    """Return whether a text has no number that only Python accepts, such as 1_000."""
+    """Return whether a text contains no number that only Python accepts, such as 1_000."""
     return "_" not in text and text.isascii()
 
 
@@ -110,7 +110,7 @@ def write_log(
     wrenches: Mapping[str, np.ndarray],
     ignored: Sequence[str],
 ) -> None:
-    """Write a log with the fewest digits that restore every bit."""
+    """Write a log with the fewest digits that preserve every bit."""
     with atomic_write(path) as stream:
         stream.write(_write_head(columns, list(wrenches), ignored))
         for begin in range(0, len(table), _PIECE):
@@ -120,7 +120,7 @@ def write_log(
 
 
 class CsvFile:
-    """Recorder of a CSV file, which is complete up to its last row at any time."""
+    """Recorder of a CSV file; the file is valid up to its last row at any time."""
 
     def __init__(
         self, path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
@@ -131,8 +131,8 @@ class CsvFile:
         self._file: Optional[LineFile] = None
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Write a piece."""
-        if self._file is None:  # not sooner: a flight that is refused leaves an older log alone
+        """Write a piece of rows."""
+        if self._file is None:  # a rejected flight must not overwrite an older log
             self._file = LineFile(self.path)
             self._file.write(self._head)
         self._file.write(csv_rows(append_wrenches(table, wrenches if self.wrenches else None)))
@@ -144,5 +144,5 @@ class CsvFile:
 
 
 def _write_head(columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]) -> bytes:
-    """Write the header and the comment with the ignored parts."""
+    """Format the header, and the comment with the ignored parts."""
     return (",".join([*columns, *list_wrench_columns(terms)]) + log_remark(ignored) + "\n").encode()

@@ -1,4 +1,4 @@
-"""MATLAB files: reads any version, writes version 5."""
+"""MATLAB files: any version for reading, version 5 for writing."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from .rows import LogRows, Table, check_log_columns, check_log_rows, split_colum
 
 _OF_PATH = ("t", "x", "y", "z", "yaw")
 _LOG = "log"
-"""Name of the variable in all layouts but "vectors"."""
+"""Name of the variable in all layouts except "vectors"."""
 
 LAYOUTS = ("vectors", "struct", "matrix", "signals")
-"""Layouts of a log: one vector per column, a struct of these, a matrix with the names of its
+"""Layouts of a log: a vector per column, a struct of these vectors, a matrix with the names of its
 columns, or time and signals as in Simulink."""
 
 
 def read_commands(path: Path, names: Sequence[str]) -> Table:
-    """Read columns by name, see `read_table`.
+    """Read columns by name; see `read_table`.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def read_path(path: Path) -> np.ndarray:
 
 
 def read_log(path: Path) -> LogRows:
-    """Read a file of `write_log`, in any layout.
+    """Read a file written by `write_log`, in any layout.
 
     Raises
     ------
@@ -138,8 +138,8 @@ def write_log(
 ) -> None:
     """Write each column as a vector and each wrench as ``wrench_NAME``.
 
-    Each topic is a struct ``topic_NAME`` with one vector per field. The cell array ``ignored``
-    contains the ignored parts, if any. All other `LAYOUTS` write the variable ``log``.
+    Each topic is a struct ``topic_NAME`` with one vector per field. If there are ignored parts, the
+    cell array ``ignored`` contains them. All other `LAYOUTS` write the variable ``log``.
     """
     if layout not in LAYOUTS:
         raise InputError(f"layout '{layout}' does not exist. Use one of {', '.join(LAYOUTS)}.")
@@ -160,7 +160,7 @@ def write_log(
 
 
 def _make_signals(variables: Mapping[str, Any]) -> Dict[str, Any]:
-    """Convert the variables of a log to Simulink's structure with time."""
+    """Convert the variables of a log to the Simulink format "structure with time"."""
     labelled: List[Tuple[str, np.ndarray]] = []
     for name, value in variables.items():
         if isinstance(value, dict):
@@ -177,7 +177,7 @@ def _make_signals(variables: Mapping[str, Any]) -> Dict[str, Any]:
 
 
 def write_variables(path: Path, variables: Mapping[str, Any]) -> None:
-    """Write arrays as variables and mappings as structs; vectors become columns."""
+    """Write arrays as variables and mappings as structs; vectors become column vectors."""
     with LOCK:
         import scipy.io
 

@@ -9,13 +9,13 @@ import numpy as np
 
 from .mat_types import Choose, Value, Variable, combine_parts
 
-_HEADER = 20  # bytes: MOPT, rows, columns, whether it is complex, length of the name
+_HEADER = 20  # bytes: MOPT, rows, columns, complex flag, length of the name
 _TYPES = ("f8", "f4", "i4", "i2", "u2", "u1")
 _CLASSES = ("double", "char", "sparse")
 
 
 def load_4(data: bytes, choose: Choose) -> Dict[str, Value]:
-    """Load the variables that `choose` picks; raises ValueError if the file is damaged."""
+    """Load the variables that `choose` selects; raise ValueError if the file is damaged."""
     found: Dict[str, Tuple[Variable, np.ndarray]] = {}
     rest = memoryview(data)
     while rest:
@@ -30,7 +30,7 @@ def load_4(data: bytes, choose: Choose) -> Dict[str, Value]:
 
 
 def _read_header(data: memoryview) -> Tuple[bytes, Variable, int, np.dtype]:
-    """Return the name, shape and kind, the bytes and the number type of a variable."""
+    """Return the name, the shape and kind, the size in bytes and the number type of a variable."""
     if len(data) < _HEADER:
         raise ValueError("it ends within a header")
     order = "<" if struct.unpack_from("<i", data)[0] in range(5000) else ">"

@@ -1,7 +1,7 @@
 """Variables of MATLAB files of versions 5, 6 and 7.
 
-scipy's reader trusts the sizes and types in a file and crashes if they are wrong. This reader
-checks them before use.
+SciPy's reader trusts the sizes and types in a file, and crashes if they are wrong. This reader
+checks them first.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import numpy as np
 from .mat_elements import COMPRESSED, HEADER, MATRIX, Elements, find_byte_order
 from .mat_types import Choose, Value, Variable, combine_parts
 
-_LARGEST = 10**9  # bytes of a variable
-_DEEPEST = 32  # levels of cells and structs in each other
-_BEGINNING = 4096  # bytes, which hold the dimensions and the name of any variable
+_LARGEST = 10**9  # maximum size of a variable, bytes
+_DEEPEST = 32  # maximum nesting depth of cells and structs
+_BEGINNING = 4096  # bytes that contain the dimensions and the name of any variable
 
 _CLASSES = {
     1: "cell",
@@ -48,14 +48,14 @@ def is_5(data: bytes) -> bool:
 
 
 def load_5(data: bytes, choose: Choose) -> Dict[str, Value]:
-    """Load the variables that `choose` picks; raises ValueError if the file is damaged."""
+    """Load the variables that `choose` selects; raise ValueError if the file is damaged."""
     elements = Elements(memoryview(data)[HEADER:], find_byte_order(data) or "<")
     found: Dict[str, Tuple[int, Elements]] = {}
     held: Dict[str, Variable] = {}
     while elements:
         kind, content = elements.take()
         matrix = _read_head(_inflate(content, _BEGINNING) if kind == COMPRESSED else content)
-        if matrix.name:  # only what MATLAB's objects share has none
+        if matrix.name:  # only the shared data of MATLAB objects have no name
             found[matrix.name] = kind, Elements(content.data, content.order)
             held[matrix.name] = Variable(matrix.shape, matrix.kind)
     return {name: _read_variable(*found[name]) for name in choose(held)}
@@ -75,7 +75,7 @@ def _inflate(content: Elements, most: int) -> Elements:
             raise ValueError(f"a variable of {size} bytes is larger than {_LARGEST}")
         data = stream.decompress(stream.unconsumed_tail, min(size, most)) if size else b""
         if size <= most:
-            stream.decompress(stream.unconsumed_tail, 1)  # its end, and with it the checksum
+            stream.decompress(stream.unconsumed_tail, 1)  # the rest, for the checksum
             if len(data) < size or not stream.eof:
                 raise ValueError("a compressed variable is not whole")
     except zlib.error as error:
@@ -136,9 +136,9 @@ def _read_array(matrix: _Matrix) -> np.ndarray:
 
 
 def _read_contents(matrix: _Matrix, each: int, level: int) -> List[Value]:
-    """Read the contents of a fixed number of variables per element."""
+    """Read the contents of all elements, each with a fixed number of variables."""
     count = each * math.prod(matrix.shape)
-    if 8 * count > len(matrix.content.data):  # the tag alone has 8 bytes
+    if 8 * count > len(matrix.content.data):  # a tag alone takes 8 bytes
         raise ValueError(f"{len(matrix.content.data)} bytes hold no {count} variables")
     return [_read_value(matrix.content.take_matrix(), level + 1) for _ in range(count)]
 
@@ -147,7 +147,7 @@ def _read_structs(matrix: _Matrix, level: int) -> Value:
     """Read a struct, or an array of structs."""
     parts = matrix.content
     if matrix.kind == "object":
-        parts.take_text()  # the name of its class
+        parts.take_text()  # skip the name of the class
     lengths = parts.take_numbers("i4")
     names = parts.take_bytes()
     if len(lengths) != 1 or lengths[0] < 1 or len(names) % lengths[0]:

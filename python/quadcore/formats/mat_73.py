@@ -1,4 +1,4 @@
-"""MATLAB files of version 7.3, and HDF5 by Octave."""
+"""MATLAB files of version 7.3, and HDF5 files of Octave."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from .mat_types import Choose, Value, Variable
 
-_OF_MATLAB = "#"  # begins the names of groups for its own use
+_OF_MATLAB = "#"  # first character of the names of MATLAB's internal groups
 
 
 def load_73(stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
-    """Load the variables that `choose` picks; raises the errors of h5py."""
+    """Load the variables that `choose` selects; errors of h5py propagate."""
     with h5py.File(stream, "r") as file:
         items = {name: _unwrap(item) for name, item in file.items() if name[0] != _OF_MATLAB}
         held = {name: _describe(item) for name, item in items.items()}
@@ -21,7 +21,7 @@ def load_73(stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
 
 
 def _unwrap(item: Any) -> Any:
-    """Return the content of a variable that Octave wraps together with its type."""
+    """Return the content of a variable; Octave stores it in a group with its type."""
     is_wrapped = isinstance(item, h5py.Group) and set(item) >= {"type", "value"}
     return item["value"] if is_wrapped else item
 
@@ -42,13 +42,13 @@ def _read_value(file: Any, item: Any) -> Value:
     if isinstance(item, h5py.Group):
         fields = {name: _read_value(file, part) for name, part in item.items()}
         if fields and all(isinstance(value, list) for value in fields.values()):
-            return [dict(zip(fields, row)) for row in zip(*fields.values())]  # an array of structs
+            return [dict(zip(fields, row)) for row in zip(*fields.values())]  # array of structs
         return fields
     if item.dtype == h5py.ref_dtype:
         return [_read_value(file, file[reference]) for reference in item[()].T.flat]
     if item.attrs.get("MATLAB_empty", 0):
         return "" if _find_kind(item) == "char" else np.empty((0, 0))
-    numbers = np.asarray(item[()]).T  # columns first
+    numbers = np.asarray(item[()]).T  # column-major order
     if _find_kind(item) == "char":
         return "".join(map(chr, numbers.flat))
     return numbers

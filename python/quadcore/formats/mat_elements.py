@@ -25,16 +25,16 @@ _NUMBERS = {
     13: "u8",
 }
 _CODECS = {1: "utf-8", 2: "utf-8", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}
-_ORDERS = {b"\x00\x01IM": "<", b"\x01\x00MI": ">"}  # the version and the order end the header
+_ORDERS = {b"\x00\x01IM": "<", b"\x01\x00MI": ">"}  # the end of the header: version and byte order
 
 
 def find_byte_order(data: bytes) -> Optional[str]:
-    """Return "<" or ">", or None if the file has another format."""
+    """Return the byte order "<" or ">"; None for any other format."""
     return _ORDERS.get(data[HEADER - 4 : HEADER])
 
 
 class Elements:
-    """Reader of consecutive elements.
+    """Reader of consecutive data elements.
 
     All methods raise ValueError if the next element is damaged or has another type.
     """
@@ -47,15 +47,15 @@ class Elements:
         return self._at < len(self.data)
 
     def take(self) -> Tuple[int, Elements]:
-        """Read type and content of the next element."""
+        """Read the type and the content of the next element."""
         kind, size, begin, end = self._read_tag()
         if begin + size > len(self.data):
             raise ValueError(f"an element of {size} bytes is longer than what holds it")
-        self._at = min(end, len(self.data))  # the padding of the last one may be missing
+        self._at = min(end, len(self.data))  # the last element may lack its padding
         return kind, Elements(self.data[begin : begin + size], self.order)
 
     def take_size(self, expected: int) -> int:
-        """Read the tag of an element of this type, and return the size of its content."""
+        """Read the tag of an element, check its type, and return the size of its content."""
         kind, size, self._at, _ = self._read_tag()
         if kind != expected:
             raise ValueError(f"an element of type {kind} instead of {expected}")
@@ -99,7 +99,7 @@ class Elements:
         if at + 8 > len(self.data):
             raise ValueError("it ends within a tag")
         kind, size = struct.unpack_from(f"{self.order}2I", self.data, at)
-        if kind >> 16:  # a small one: its content is in the tag
+        if kind >> 16:  # small element with its content in the tag
             kind, size = kind & 0xFFFF, kind >> 16
             if size > 4:
                 raise ValueError(f"a small element of {size} bytes has more than 4")

@@ -13,25 +13,25 @@ from .mat_variables import load
 
 
 def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> np.ndarray:
-    """Read columns in any of the supported forms.
+    """Read columns in any of the supported layouts.
 
     Parameters
     ----------
     path
-        MATLAB file with vectors of these names, or with a single matrix or struct. A matrix has
-        the columns in this order. A struct contains vectors of these names, ``time`` and
+        MATLAB file that contains vectors with these names, or a single matrix or struct. A matrix
+        has the columns in this order. A struct contains vectors with these names, ``time`` and
         ``signals`` with ``values`` as in Simulink, or ``Time`` and ``Data`` of a timeseries.
     names
-        Names of the columns, time first.
+        Names of the columns, starting with the time.
     needed
         Number of required columns.
     expected
-        Description of such a file in messages.
+        Description of a suitable file for messages.
 
     Raises
     ------
     InputError
-        If the file has another content.
+        If the file has other contents.
     """
 
     def choose(held: Mapping[str, Variable]) -> Sequence[str]:
@@ -67,19 +67,19 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
 
 
 def _is_row(variable: Variable, least: int, most: int) -> bool:
-    """Return whether an array may be a matrix of one row, such as a constant command."""
+    """Return whether an array can be a matrix with a single row, such as a constant command."""
     return (
         variable.shape[:1] == (1,) and least <= variable.shape[-1] <= most and variable.is_numbers
     )
 
 
 def _is_one_more(held: Mapping[str, Any], names: Sequence[str]) -> bool:
-    """Return whether the file has a column of a rotor that the model does not have."""
+    """Return whether the file has a column for a rotor that the model does not have."""
     return f"w{len(names)}" in held and names[-1] == f"w{len(names) - 1}"
 
 
 def stack_vectors(path: Path, columns: Mapping[str, Value]) -> np.ndarray:
-    """Make a table of vectors; their lengths must be equal."""
+    """Join vectors of equal length into a table."""
     vectors = {name: check_vector(path, name, value) for name, value in columns.items()}
     first = next(iter(vectors))
     count = len(vectors[first])
@@ -90,7 +90,7 @@ def stack_vectors(path: Path, columns: Mapping[str, Value]) -> np.ndarray:
 
 
 def check_vector(path: Path, name: str, value: Value) -> np.ndarray:
-    """Return a variable as a vector; raises `InputError` if it is not one of real numbers."""
+    """Return a variable as a vector; raise `InputError` if it is not a vector of real numbers."""
     if (
         not isinstance(value, np.ndarray)
         or value.dtype.kind not in "iuf"
@@ -101,7 +101,7 @@ def check_vector(path: Path, name: str, value: Value) -> np.ndarray:
 
 
 def _join_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
-    """Join time and signals; returns None if the struct has another form."""
+    """Join time and signals into a table; return None if the struct has another layout."""
     fields = {name.lower(): value for name, value in struct.items()}
     time = fields.get("time")
     if "signals" in fields:
@@ -122,7 +122,7 @@ def _join_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
 
 
 def list_signals(signals: Value) -> List[Any]:
-    """Return the signals of a struct of Simulink as a list, also if there is only one."""
+    """Return the signals of a Simulink struct as a list, even if there is only one signal."""
     return signals if isinstance(signals, list) else [signals]
 
 

@@ -1,4 +1,4 @@
-"""Values of MATLAB files: arrays, texts, cells as lists, structs as dictionaries."""
+"""Values of MATLAB files: arrays, texts, cells as lists, and structs as dictionaries."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ _OTHERS = ("struct", "object", "char", "cell", "sparse", "function", "opaque")
 
 
 class Variable(NamedTuple):
-    """Shape and class of a variable that is not read yet."""
+    """Shape and class of a variable before it is read."""
 
     shape: Tuple[int, ...]
     kind: str
-    """Class of the variable in MATLAB."""
+    """MATLAB class of the variable."""
 
     @property
     def is_table(self) -> bool:
@@ -33,7 +33,7 @@ Choose = Callable[[Mapping[str, Variable]], Sequence[str]]
 
 
 def combine_parts(real: np.ndarray, imaginary: np.ndarray) -> np.ndarray:
-    """Make complex numbers; a product would warn about infinite parts."""
+    """Combine real and imaginary parts; a multiplication would warn about infinite parts."""
     numbers = real.astype(complex)
     numbers.imag = imaginary
     return numbers

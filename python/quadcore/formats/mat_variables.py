@@ -13,21 +13,21 @@ from .mat_4 import load_4
 from .mat_5 import is_5, load_5
 from .mat_types import Choose, Value, Variable
 
-_LARGEST = 10**9  # bytes of a file before version 7.3
-_MOST_VALUES = 10**7  # of a variable; of commands more than three hours at 1 kHz
+_LARGEST = 10**9  # maximum size of a file before version 7.3, bytes
+_MOST_VALUES = 10**7  # maximum size of a variable: commands for more than three hours at 1 kHz
 _OCTAVE_TEXT = b"# Created by Octave"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
 def load(path: Path, choose: Choose) -> Dict[str, Value]:
-    """Load the variables that `choose` picks.
+    """Load the variables that `choose` selects.
 
     Parameters
     ----------
     path
-        File of version 4, 5, 6 or 7; with the package h5py also 7.3, or HDF5 of Octave.
+        File of version 4, 5, 6 or 7. With the package h5py also version 7.3, or HDF5 of Octave.
     choose
-        Function that receives all variables by name and returns names to load.
+        Function that takes all variables by name and returns the names of those to load.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def load(path: Path, choose: Choose) -> Dict[str, Value]:
             return _load(path, stream, choose)
         except (QuadcoreError, OSError):
             raise
-        except Exception as error:  # there is no common base class for what a broken file raises
+        except Exception as error:  # a damaged file can raise any exception
             raise InputError(f"{path}: not a MATLAB file: {error}. Save it again.") from error
 
 
@@ -60,7 +60,7 @@ def _load(path: Path, stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
         return load_73(stream, chosen)
     if is_5(head):
         return load_5(read_whole(path, stream, _LARGEST), chosen)
-    if 0 in head[:4]:  # version 5 begins with a text
+    if 0 in head[:4]:  # files of version 5 begin with a text
         return load_4(read_whole(path, stream, _LARGEST), chosen)
     raise InputError(f"{path}: not a MATLAB file. Save it with the option -v7.")
 

@@ -10,25 +10,25 @@ import numpy as np
 from .._core import InputError, log_columns
 
 _ROUNDNESS = 1e-2
-"""Accepted difference between 1 and the length of a quaternion, for logs with few digits."""
+"""Accepted deviation of the norm of a quaternion from 1, for logs with few digits."""
 
 _WRENCH = ("fx", "fy", "fz", "tx", "ty", "tz")
 
 
 class Table(NamedTuple):
-    """Numbers from a file, with the name of each row in messages."""
+    """Numbers from a file, and functions for messages about its rows."""
 
     rows: np.ndarray
     place: Callable[[int], str]
     counted: str
-    """Remark on the counting of rows, or ""."""
+    """Remark on the numbering of rows, or ""."""
 
 
 class LogRows(NamedTuple):
-    """Contents of a log file, see `Trajectory`."""
+    """Contents of a log file; see `Trajectory`."""
 
     columns: Sequence[str]
-    """Columns of the state, then TOPIC.FIELD."""
+    """Columns of the state, then ``TOPIC.FIELD``."""
     rows: np.ndarray
     wrenches: Mapping[str, np.ndarray]
     ignored: Sequence[str]
@@ -45,12 +45,12 @@ def split_columns(columns: Sequence[str], rows: np.ndarray) -> Tuple[Sequence[st
     columns
         Names of the columns.
     rows
-        Shape (n, columns).
+        Rows of the log, shape (n, columns).
 
     Returns
     -------
     of_state
-        Names of the first columns.
+        Names of the columns of the state.
     topics
         Columns by topic and field, shape (n,).
     """
@@ -63,12 +63,12 @@ def split_columns(columns: Sequence[str], rows: np.ndarray) -> Tuple[Sequence[st
 
 
 def list_wrench_columns(terms: Sequence[str]) -> List[str]:
-    """List the columns of wrenches, six per wrench, which follow all others."""
+    """List the columns of wrenches; there are six per wrench, after all other columns."""
     return [f"wrench_{term}.{field}" for term in terms for field in _WRENCH]
 
 
 def find_wrench_terms(columns: Sequence[str]) -> List[str]:
-    """Return the names of the wrenches at the end of a list of columns."""
+    """Return the names of the wrenches from the columns at the end of a list."""
     terms: List[str] = []
     for end in range(len(columns), len(_WRENCH) - 1, -len(_WRENCH)):
         six = list(columns[end - len(_WRENCH) : end])
@@ -80,14 +80,14 @@ def find_wrench_terms(columns: Sequence[str]) -> List[str]:
 
 
 def append_wrenches(table: np.ndarray, wrenches: Optional[np.ndarray]) -> np.ndarray:
-    """Append wrenches (rows, terms, 6), if any, to a table (rows, columns)."""
+    """Append wrenches (rows, terms, 6), unless None, to a table (rows, columns)."""
     if wrenches is None:
         return table
     return np.hstack([table, wrenches.reshape(len(table), len(_WRENCH) * wrenches.shape[1])])
 
 
 def check_log_columns(place: str, columns: Sequence[str]) -> int:
-    """Count the columns of the state; raises `InputError` unless the columns are those of a log."""
+    """Count the columns of the state; raise `InputError` if the columns are not those of a log."""
     of_state = [column for column in columns if "." not in column]
     fixed = log_columns(0)
     expected = log_columns(max(0, len(of_state) - len(fixed)))
@@ -100,14 +100,14 @@ def check_log_columns(place: str, columns: Sequence[str]) -> int:
 
 
 def check_log_rows(place: Callable[[int], str], rows: np.ndarray, of_state: int) -> None:
-    """Raise `InputError` unless the rows are those of a flight.
+    """Raise `InputError` if the rows cannot be those of a flight.
 
     Parameters
     ----------
     place
         Function that returns the name of a row in messages.
     rows
-        Shape (n, columns).
+        Rows of the log, shape (n, columns).
     of_state
         Number of columns of the state; other columns may be NaN.
     """
@@ -128,19 +128,19 @@ def check_log_rows(place: Callable[[int], str], rows: np.ndarray, of_state: int)
 
 
 class Recorder(Protocol):
-    """Receiver of the rows of a flight."""
+    """Receiver of the logged rows of a flight."""
 
     wrenches: bool
     """Whether the recorder needs wrenches."""
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Receive a piece of the rows, see `flight.fly`."""
+        """Receive a piece of rows; see `flight.fly`."""
 
     def close(self) -> None:
-        """Finish, also if the flight is incomplete."""
+        """Finish recording, even if the flight is incomplete."""
 
 
 class LogFile(Recorder, Protocol):
-    """Recorder that writes a file."""
+    """Recorder that writes to a file."""
 
     path: Path

@@ -1,4 +1,4 @@
-"""Recorder for formats that need all rows at once."""
+"""Recorder for formats that require all rows at once."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Write = Callable[[Path, Sequence[str], np.ndarray, Mapping[str, np.ndarray], Seq
 
 
 class DeferredLogFile:
-    """Recorder that writes the log when the flight ends.
+    """Recorder that writes the log at the end of the flight.
 
-    Until then the rows are in an unnamed file in the folder of the log.
+    Until then, the rows are in an unnamed file in the folder of the log.
 
     Parameters
     ----------
     write
-        write(path, columns, table, wrenches, ignored): writes the log.
+        Function write(path, columns, table, wrenches, ignored) that writes the log.
     path, columns, terms, ignored
         As for `Format.log_file`.
     """
@@ -34,7 +34,7 @@ class DeferredLogFile:
         terms: Sequence[str],
         ignored: Sequence[str],
     ) -> None:
-        import tempfile  # is slow to import
+        import tempfile  # slow to import
 
         self.path = path
         self.wrenches = bool(terms)
@@ -47,7 +47,7 @@ class DeferredLogFile:
             raise make_write_error(path, error) from error
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Append a piece."""
+        """Append a piece of rows."""
         rows = append_wrenches(table, wrenches if self.wrenches else None)
         try:
             self._rows.write(rows.tobytes())

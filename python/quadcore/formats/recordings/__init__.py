@@ -1,7 +1,7 @@
 """Recordings of real flights in other formats.
 
-`read_recording` recognises the format by the content of the file. A `mapping` describes the columns
-in terms of a flight: quantities, units, frames and the order of the rotors.
+`read_recording` detects the format from the content of the file. A `mapping` assigns the columns to
+the quantities of a flight, with units, frames and the order of the rotors.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ def read_recording(path: Path, mapping: Union[str, Path, None] = None) -> Record
     Parameters
     ----------
     path
-        ULog, Crazyflie micro-SD log, blackbox log, bag or CSV file; also compressed by gzip.
+        ULog, Crazyflie micro-SD log, blackbox log, bag or CSV file, optionally compressed by gzip.
     mapping
-        File of a mapping or a built-in name (default: the built-in mapping that fits).
+        Mapping file or name of a built-in mapping (default: the built-in mapping that matches).
 
     Raises
     ------
     InputError
-        If a file is missing or damaged, or no mapping fits.
+        If a file is missing or damaged, or no mapping matches.
     """
     head = read_head(path)
     kind = _find_format(head)
@@ -71,14 +71,14 @@ def read_recording(path: Path, mapping: Union[str, Path, None] = None) -> Record
 
 
 def _find_format(head: bytes) -> str:
-    if blackbox.MAGIC in head:  # other data may come first
+    if blackbox.MAGIC in head:  # other data may precede it
         return "blackbox"
     starts = {"ulog": ulog.MAGIC, "crazyflie": crazyflie.MAGIC, "bag": ros.MAGIC}
     return next((kind for kind, magic in starts.items() if head.startswith(magic)), "csv")
 
 
 def _find_mapping(header: Sequence[str]) -> Optional[str]:
-    """Return the first built-in mapping of CSV files whose measurements are all in the header."""
+    """Return the first built-in CSV mapping with all its measured columns in the header."""
     for name in list_mappings():
         known = read_mapping(name)
         if known.format == "csv" and {known.time, *known.list_measured()} <= set(header):

@@ -19,15 +19,15 @@ _TOPICS = {
 
 
 def make_log_rows(recording: Recording) -> LogRows:
-    """Make a row for each measured position; topics contain what a row of a log does not.
+    """Make a row for each measured position; quantities without a column become topics.
 
-    Quantities with other times are interpolated. Missing velocities and rates are differences of
-    positions and orientations.
+    Quantities with other times are interpolated. Missing velocities and rates are computed from
+    differences of positions and orientations.
 
     Raises
     ------
     InputError
-        If position or orientation is missing, or there is no row.
+        If the position or the orientation is missing, or they do not overlap in time.
     """
     given = recording.quantities
     for name in ("position", "orientation"):

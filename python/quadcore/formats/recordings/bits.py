@@ -1,4 +1,4 @@
-"""Numbers of a blackbox log as bytes: the encodings of its documentation."""
+"""Numbers of a blackbox log as bytes, in the encodings of its documentation."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Callable, Dict, List
 
 
 class Reader:
-    """Position in the bytes of a log; raises IndexError at the end."""
+    """Reader of the bytes of a log; it raises IndexError at the end."""
 
     def __init__(self, data: bytes, at: int) -> None:
         self.data, self.at = data, at
@@ -18,7 +18,7 @@ class Reader:
         return value
 
     def read_unsigned(self) -> int:
-        """Read seven bits of each byte until one without the highest bit."""
+        """Read an unsigned number: seven bits per byte; the last byte lacks the highest bit."""
         value = shift = 0
         while True:
             byte = self.read_byte()
@@ -30,12 +30,12 @@ class Reader:
                 raise ValueError("a number has more than 32 bits")
 
     def read_signed(self) -> int:
-        """Read a number with alternating signs: 0, -1, 1, -2 and so on."""
+        """Read a signed number in zigzag encoding: 0, -1, 1, -2 and so on."""
         value = self.read_unsigned()
         return (value >> 1) ^ -(value & 1)
 
     def read_little(self, size: int) -> int:
-        """Read a signed number of some bytes, the lowest first."""
+        """Read a signed little-endian number with this number of bytes."""
         end = self.at + size
         if end > len(self.data):
             raise IndexError
@@ -45,7 +45,7 @@ class Reader:
 
 
 def _extend(value: int, bits: int) -> int:
-    """Return a number whose highest bit is its sign."""
+    """Extend the sign of a number that has its sign in the highest bit."""
     return value - (1 << bits) if value >> (bits - 1) else value
 
 
@@ -66,7 +66,7 @@ def _read_nothing(reader: Reader, count: int) -> List[int]:
 
 
 def _read_tagged(reader: Reader, count: int) -> List[int]:
-    """Read up to 8 numbers: a bit of the first byte shows which are not 0."""
+    """Read up to 8 numbers; the bits of the first byte mark those that are not 0."""
     if count == 1:
         return [reader.read_signed()]
     tag = reader.read_byte()
@@ -108,7 +108,7 @@ def _read_three_variable(reader: Reader, count: int) -> List[int]:
 
 
 def _read_four(reader: Reader, count: int) -> List[int]:
-    """Read four numbers of 0, 4, 8 or 16 bits, as a stream of half bytes."""
+    """Read four numbers of 0, 4, 8 or 16 bits from a stream of half bytes."""
     tag = reader.read_byte()
     sizes = [(0, 1, 2, 4)[tag >> shift & 3] for shift in (0, 2, 4, 6)]
     whole = (sum(sizes) + 1) // 2
@@ -135,7 +135,7 @@ ENCODINGS: Dict[int, Callable[[Reader, int], List[int]]] = {
     9: _read_nothing,
     10: _read_three_variable,
 }
-"""Readers of numbers by encoding; they are called with the number of fields of the group."""
+"""Readers of numbers by encoding; the second argument is the number of fields in the group."""
 
 GROUPS = {6: 8, 7: 3, 8: 4, 10: 3}
-"""Maximum number of adjacent fields that one call of an encoding reads."""
+"""Maximum number of adjacent fields that one call of a reader reads."""

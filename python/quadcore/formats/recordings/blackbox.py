@@ -1,6 +1,6 @@
-"""Blackbox logs of Betaflight and its relatives, decoded as their documentation describes.
+"""Blackbox logs of Betaflight and related firmware, decoded as documented.
 
-The page "Blackbox logging internals" of Betaflight documents frames, predictors and encodings.
+The page "Blackbox logging internals" of Betaflight documents the frames, predictors and encodings.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .series import Columns, make_columns
 MAGIC = b"H Product:Blackbox flight data recorder"
 
 _EVENTS = {0: 1, 13: 2, 14: 2, 15: 1, 30: 2}
-"""Numbers that follow the event types: beep, adjustment, resume, disarming, flight mode."""
+"""Count of numbers after each event type: beep, adjustment, resume, disarming, flight mode."""
 _END = 255
 _END_TEXT = b"End of log\0"
 
@@ -45,13 +45,13 @@ class _Session(NamedTuple):
 def read_blackbox(path: Path, data: bytes) -> Columns:
     """Read the fields of the main frames, in the units of Betaflight's own tools.
 
-    Gyro fields are in deg/s, accelerometer fields in g, motor fields from 0 to 1, eRPM fields in
-    revolutions of the rotor per minute.
+    Gyro fields are in deg/s and accelerometer fields in g. Motor fields range from 0 to 1. eRPM
+    fields are rotor revolutions per minute.
 
     Raises
     ------
     InputError
-        If the header is damaged, an encoding is unknown, or there is no frame.
+        If the header is damaged, an encoding is unknown, or there are no frames.
     """
     starts = _find_sessions(data)
     decoded = []
@@ -111,7 +111,7 @@ def _has(header: Mapping[str, str], kind: str) -> bool:
 
 
 def _read_fields(header: Mapping[str, str], kind: str) -> List[_Field]:
-    named = "I" if kind == "P" else kind  # the names of both are the same
+    named = "I" if kind == "P" else kind  # P frames use the names of I frames
     names = header[f"Field {named} name"].split(",")
     predictors = [int(text) for text in header[f"Field {kind} predictor"].split(",")]
     encodings = [int(text) for text in header[f"Field {kind} encoding"].split(",")]
@@ -123,7 +123,7 @@ def _read_fields(header: Mapping[str, str], kind: str) -> List[_Field]:
 
 
 def _read_frames(path: Path, data: bytes, session: _Session) -> Tuple[List[List[int]], int]:
-    """Return the rows of the main frames, and the number of bytes that are no frame."""
+    """Return the rows of the main frames, and the number of bytes outside valid frames."""
     rows: List[List[int]] = []
     history: Optional[Tuple[List[int], List[int]]] = None
     predict = _Predictors(path, session)
@@ -146,7 +146,7 @@ def _read_frames(path: Path, data: bytes, session: _Session) -> Tuple[List[List[
                     rows.append(row)
             else:
                 raise ValueError("no frame")
-        except (ValueError, IndexError):  # decoding goes on at the next complete frame
+        except (ValueError, IndexError):  # decoding continues at the next I frame
             history = None
             after = data.find(b"I", begin + 1)
             reader.at = after if after >= 0 else len(data)
@@ -155,7 +155,7 @@ def _read_frames(path: Path, data: bytes, session: _Session) -> Tuple[List[List[
 
 
 def _skip_event(reader: Reader) -> bool:
-    """Skip an event; returns whether the log goes on."""
+    """Skip an event; return whether the log continues."""
     kind = reader.read_byte()
     if kind == _END and reader.data[reader.at : reader.at + len(_END_TEXT)] == _END_TEXT:
         return False
@@ -182,7 +182,7 @@ def _read_values(reader: Reader, fields: Sequence[_Field]) -> List[int]:
 
 
 class _Predictors:
-    """The numbers to add to what main frames contain."""
+    """Predictions that are added to the values of main frames."""
 
     def __init__(self, path: Path, session: _Session) -> None:
         header = session.header
@@ -202,7 +202,7 @@ class _Predictors:
     def complete(
         self, kind: str, values: List[int], history: Optional[Tuple[List[int], List[int]]]
     ) -> List[int]:
-        """Return the fields of a frame."""
+        """Return the fields of a frame with the predictions added."""
         row: List[int] = []
         for i, (field, value) in enumerate(zip(self._fields[kind], values)):
             value += self._predict(field.predictor, i, row, history)
@@ -247,12 +247,12 @@ class _Predictors:
 
 
 def _read_interval(path: Path, header: Mapping[str, str]) -> Tuple[int, int, int]:
-    """Return numerator and denominator of the P interval, and the I interval."""
+    """Return the numerator and denominator of the P interval, and the I interval."""
     text = header.get("P interval", "1/1")
     numerator, _, denominator = text.partition("/")
     try:
         interval = (int(numerator), int(denominator or numerator), int(header["I interval"]))
-        if not denominator:  # newer firmware: every so many iterations
+        if not denominator:  # newer firmware: the number of iterations
             interval = (1, max(1, interval[1]), interval[2])
         if min(interval) < 1:
             raise ValueError(text)
@@ -264,7 +264,7 @@ def _read_interval(path: Path, header: Mapping[str, str]) -> Tuple[int, int, int
 
 
 def _read_numbers(path: Path, header: Mapping[str, str], name: str) -> List[int]:
-    """Return the whole numbers of an entry; none without the entry."""
+    """Return the integers of a header entry; empty if the entry is missing."""
     text = header.get(name, "")
     parts = text.split(",") if text else []
     if not all(re.fullmatch("-?[0-9]+", part.strip()) for part in parts):
@@ -311,7 +311,7 @@ def _scale_columns(
 
 
 def _read_gyro_scale(path: Path, header: Mapping[str, str]) -> float:
-    """Return deg/s for each unit of the gyro; the header contains the bits of a float."""
+    """Return the scale of the gyro, deg/s per unit; the header contains the bits of a float."""
     name = "gyro_scale" if "gyro_scale" in header else "gyro.scale"
     text = header.get(name, "")
     if not text.startswith("0x"):

@@ -1,8 +1,8 @@
-"""Files of the micro-SD card deck of a Crazyflie, version 2.
+"""Version 2 files of the micro-SD card deck of a Crazyflie.
 
-Bitcraze's page on the deck describes the format. The byte 0xBC and the version come first. The
-event types follow, with names and types of their variables, then the events with their times in us.
-A CRC-32 of everything ends the file.
+Bitcraze's page on the deck describes the format. The byte 0xBC and the version come first. They are
+followed by the event types, with the names and types of their variables, and the events with their
+times (us). The file ends with a CRC-32 of everything before it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .series import Columns
 MAGIC = b"\xbc"
 
 _TYPES = "BbHhIifd"
-"""Accepted types of variables: letters of the module struct."""
+"""Supported types of variables, as letters of the module struct."""
 
 
 def read_crazyflie(path: Path, data: bytes) -> Columns:
@@ -29,7 +29,7 @@ def read_crazyflie(path: Path, data: bytes) -> Columns:
     Raises
     ------
     InputError
-        If the file is damaged, truncated, or of another version.
+        If the file is damaged or truncated, or has another version.
     """
     if len(data) < 9 or struct.unpack_from("<I", data, len(data) - 4)[0] != zlib.crc32(data[:-4]):
         raise InputError(
@@ -56,7 +56,7 @@ def read_crazyflie(path: Path, data: bytes) -> Columns:
 
 
 def _read_events(data: bytes, count: int) -> Tuple[Dict[int, Tuple[str, np.dtype]], int]:
-    """Read the event types: name and record of each, and the end of the header."""
+    """Read the name and record of each event type, and return the end of the header."""
     kinds: Dict[int, Tuple[str, np.dtype]] = {}
     at = 5
     for _ in range(count):
@@ -81,7 +81,7 @@ def _read_name(data: bytes, at: int) -> Tuple[str, int]:
 
 
 def _split_rows(data: bytes, kinds: Dict[int, Tuple[str, np.dtype]], at: int) -> Dict[int, bytes]:
-    """Return the records of each event type."""
+    """Return the records of each event type as bytes."""
     end = len(data) - 4
     if len(kinds) == 1:
         [(kind, (_, record))] = kinds.items()

@@ -1,4 +1,4 @@
-"""Mappings: files that describe the columns of a log in terms of a flight."""
+"""Mappings: files that assign the columns of a log to the quantities of a flight."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ QUANTITIES: Dict[str, int] = {
     "setpoint": 3,
     "setpoint_yaw": 1,
 }
-"""Quantities of a recording, and their number of columns; 0: see `_count_columns`."""
+"""Number of columns of each quantity of a recording; 0 if the number varies."""
 
 _SETPOINT = "setpoint"
 _ORDERS = {"xyzw": 4, "wxyz": 4, "roll_pitch_yaw": 3}
@@ -30,28 +30,28 @@ _FOLDER = Path(__file__).parent / "mappings"
 _TOP = ("format", "time", "world", "body", "rotor_order", "spin", *QUANTITIES)
 _ENTRY = ("columns", "unit", "signs")
 _ENTRY_OF = {"orientation": ("order",), "velocity": ("axes",), "commands": ("range",)}
-"""Further keys of some quantities."""
+"""Additional keys of some quantities."""
 
 FORMATS = ("csv", "crazyflie", "ulog", "blackbox", "bag")
 
 
 class Entry(NamedTuple):
-    """Columns of one quantity.
+    """Columns of a quantity.
 
     Attributes
     ----------
     columns : list of str
         Names of the columns.
     factor : float
-        SI units for each unit of the columns.
+        Factor from the unit of the columns to SI units.
     signs : list of float
         Sign of each column.
     order : str
-        Order of an orientation: xyzw, wxyz or roll_pitch_yaw.
+        Order of the components of an orientation: xyzw, wxyz or roll_pitch_yaw.
     axes : str
         Axes of a velocity: world or body.
     range : pair of float, optional
-        Values of commands that mean 0 and 1.
+        Command values that correspond to 0 and 1.
     """
 
     columns: List[str]
@@ -63,26 +63,26 @@ class Entry(NamedTuple):
 
 
 class LogMapping(NamedTuple):
-    """A mapping of one kind of log.
+    """Mapping for one kind of log.
 
     Attributes
     ----------
     where : str
-        File, for messages.
+        Path of the file for messages.
     format : str
         Format of the log, one of `FORMATS`.
     time : str
-        Column with the time of a CSV file.
+        Time column of a CSV file.
     time_factor : float
-        Seconds for each unit of that column.
+        Factor from the unit of the time column to seconds.
     is_ned, is_frd : bool
-        Whether the world is north, east, down, and the body forward, right, down.
+        Whether the world axes are north, east, down, and the body axes forward, right, down.
     rotor_order : list of int, optional
-        Number of the log's motor, from 1, for each rotor of the model.
+        Motor number in the log, starting at 1, for each rotor of the model.
     spin : list of float, optional
         Direction of rotation of each rotor of the model about its axis, 1 or -1.
     entries : dict
-        Entries of each quantity; the first with all its columns counts.
+        Entries of each quantity. The first entry for which all columns exist is used.
     """
 
     where: str
@@ -100,7 +100,7 @@ class LogMapping(NamedTuple):
         return [name for group in self.entries.values() for each in group for name in each.columns]
 
     def list_measured(self) -> List[str]:
-        """List the columns of all entries but the set-points, which few logs contain."""
+        """List the columns of all entries except the set-points, which few logs contain."""
         measured = {n: group for n, group in self.entries.items() if not n.startswith(_SETPOINT)}
         return self._replace(entries=measured).list_columns()
 
@@ -111,12 +111,12 @@ def list_mappings() -> List[str]:
 
 
 def read_mapping(given: Union[str, Path]) -> LogMapping:
-    """Read a mapping: a file, or a built-in name.
+    """Read a mapping from a file, or by its built-in name.
 
     Raises
     ------
     InputError
-        If the file is missing or wrong; the message begins with the file.
+        If the file is missing or invalid; the message begins with the file.
     """
     import yaml  # slow to import
 

@@ -1,4 +1,4 @@
-"""Measurements of a flight in SI units and quadcore's frames."""
+"""Measurements of a flight in SI units and in the frames of quadcore."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from .series import Columns, Series
 
 
 class Recording(NamedTuple):
-    """Measurements of a flight, each over its own times.
+    """Measurements of a flight; each has its own times.
 
     Attributes
     ----------
     where : str
-        File, for messages.
+        Path of the file for messages.
     quantities : dict of str to Series
-        ``position`` (m), ``velocity`` (m/s) in the world, with z up. ``orientation`` (x, y, z, w).
-        ``rates`` (rad/s), ``acceleration`` (specific force, m/s^2) in the body: forward, left, up.
-        ``rotors`` (rad/s), signed by the spin if it is known. ``commands``, 0 to 1 if their range
-        is known. ``battery`` (V).
-        ``setpoint`` (m) and ``setpoint_yaw`` (rad) of a position controller, as ``position``.
+        ``position`` (m) and ``velocity`` (m/s) in the world with z up, and ``orientation`` (x, y,
+        z, w). ``rates`` (rad/s) and ``acceleration`` (specific force, m/s^2) in body axes: forward,
+        left, up. ``rotors`` (rad/s), signed by the spin if it is known. ``commands``, from 0 to 1
+        if their range is known. ``battery`` (V). ``setpoint`` (m) and ``setpoint_yaw`` (rad) of a
+        position controller, in the same axes as ``position``.
     spin : ndarray (rotors,), optional
         Direction of rotation of each rotor, 1 or -1.
     incomplete : dict of str to int
-        Number of rows of each quantity in which only some columns are numbers; they are left out.
+        Number of rows of each quantity that were removed because some columns lack a number.
     """
 
     where: str
@@ -47,7 +47,8 @@ def map_columns(columns: Columns, mapping: LogMapping, is_shipped: bool) -> Reco
     mapping
         Mapping of the columns.
     is_shipped
-        Whether to leave out quantities with missing columns, which are errors in a user's mapping.
+        Whether the mapping is built in. A log may lack some columns of such a mapping; for a user's
+        mapping this is an error.
 
     Raises
     ------
@@ -113,18 +114,18 @@ def _to_quaternions(values: np.ndarray, order: str, mapping: LogMapping) -> np.n
         q = values if order == "xyzw" else values[:, [1, 2, 3, 0]]
     with np.errstate(invalid="ignore", divide="ignore"):
         q = q / np.linalg.norm(q, axis=1, keepdims=True)
-    if mapping.is_ned:  # ENU from NED: half a turn about the axis between x and y
+    if mapping.is_ned:  # NED to ENU: half a turn about the axis between x and y
         half = np.sqrt(0.5)
         x, y, z, w = q.T
         q = half * np.column_stack([w + z, w - z, y - x, -x - y])
-    if mapping.is_frd:  # FRD from FLU: half a turn about x
+    if mapping.is_frd:  # FRD to FLU: half a turn about x
         x, y, z, w = q.T
         q = np.column_stack([w, z, -y, -x])
     return q
 
 
 def _count_incomplete(series: Series) -> int:
-    """Count the rows with numbers and without; a row without any number is no sample."""
+    """Count the rows that contain both numbers and gaps; a row without any number is no sample."""
     known = np.isfinite(series.values)
     return int(np.sum(known.any(axis=1) & ~(known.all(axis=1) & np.isfinite(series.time))))
 
@@ -145,7 +146,7 @@ def _turn_velocity(where: str, found: Dict[str, Series]) -> Series:
 
 
 def interpolate_orientation(series: Series, time: np.ndarray) -> np.ndarray:
-    """Return unit quaternions between samples (the chord instead of the arc)."""
+    """Return interpolated unit quaternions (along the chord instead of the arc)."""
     q = series.values.copy()
     flips = np.cumprod(np.where(np.sum(q[1:] * q[:-1], axis=1) < 0, -1, 1))
     q[1:] *= flips[:, None]

@@ -1,4 +1,4 @@
-"""Messages of any topics of a ROS 1 bag."""
+"""Messages of arbitrary topics in a ROS 1 bag."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _PART = re.compile(r"([A-Za-z_]\w*)|\[(\d+)\]")
 
 
 def read_bag(path: Path, wanted: Sequence[str]) -> Columns:
-    """Read numbers ``/TOPIC.FIELD.FIELD`` or ``/TOPIC.FIELD[0]``.
+    """Read numeric fields ``/TOPIC.FIELD.FIELD`` or ``/TOPIC.FIELD[0]``.
 
-    The times are the stamps of the headers, or else those of the bag.
+    The times are the header stamps, or the times in the bag for messages without a header.
 
     Raises
     ------
     InputError
-        If rosbags is missing, the bag is damaged, or a message lacks a wanted field.
+        If rosbags is missing, the bag is damaged, or a message lacks a requested field.
     """
     columns: Dict[str, np.ndarray] = {}
     times: Dict[str, np.ndarray] = {}

@@ -1,4 +1,4 @@
-"""Numbers over time, as a file of a flight contains them."""
+"""Time series in the file of a flight."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from ..._core import InputError
 from ...support.input_files import open_file, read_bytes
 from ...support.parameters import suggest
 
-_LARGEST = 10**9  # bytes
-_HEAD = 100_000  # bytes, enough for each header
+_LARGEST = 10**9  # maximum size of a file, bytes
+_HEAD = 100_000  # bytes that are sufficient for each header
 _GZIP = b"\x1f\x8b"
 
 
 class Series(NamedTuple):
-    """Values over their own times.
+    """Values with their own times.
 
     Attributes
     ----------
@@ -35,16 +35,16 @@ class Series(NamedTuple):
 
 
 class Columns:
-    """Columns of a file by name, each with its times.
+    """Columns of a file by name; each column has its own times.
 
     Parameters
     ----------
     where
-        File, for messages.
+        Path of the file for messages.
     columns
         Columns by name, shape (rows,).
     times
-        Times of each column, s.
+        Times of each column by name, s.
     """
 
     def __init__(
@@ -62,7 +62,7 @@ class Columns:
         return list(self._columns)
 
     def stack(self, names: Sequence[str]) -> Series:
-        """Return a copy of columns of one topic side by side, in float64.
+        """Return a float64 copy of the columns of one topic side by side.
 
         Raises
         ------
@@ -83,13 +83,13 @@ class Columns:
 
 
 def make_columns(where: str, time: np.ndarray, columns: Mapping[str, np.ndarray]) -> Columns:
-    """Make columns that share their times."""
+    """Make columns with common times."""
     return Columns(where, columns, dict.fromkeys(columns, time))
 
 
 @contextmanager
 def open_content(path: Path) -> Iterator[IO[bytes]]:
-    """Open a file, also a compressed one (gzip); raises `InputError` if it is damaged."""
+    """Open a plain or gzip-compressed file; raise `InputError` if it is damaged."""
     with open_file(path) as stream:
         try:
             head = stream.read(len(_GZIP))
@@ -104,13 +104,13 @@ def open_content(path: Path) -> Iterator[IO[bytes]]:
 
 
 def read_head(path: Path) -> bytes:
-    """Read the first bytes of a file, also of a compressed one (gzip)."""
+    """Read the first bytes of a plain or gzip-compressed file."""
     with open_content(path) as stream:
         return stream.read(_HEAD)
 
 
 def read_content(path: Path) -> bytes:
-    """Read a file, also a compressed one (gzip); raises `InputError` if it is damaged."""
+    """Read a plain or gzip-compressed file; raise `InputError` if it is damaged."""
     data = read_bytes(path, _LARGEST)
     if data[:2] != _GZIP:
         return data

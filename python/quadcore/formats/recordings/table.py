@@ -1,4 +1,4 @@
-"""CSV files with a header of any names."""
+"""CSV files with arbitrary column names."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .series import Columns, make_columns
 
 
 def read_header(path: Path, data: bytes) -> List[str]:
-    """Return the names of the columns; raises `InputError` if the file is no text."""
+    """Return the names of the columns; raise `InputError` if the file is not text."""
     line = data[: data.find(b"\n") if b"\n" in data else len(data)]
     try:
         return [name.strip().strip('"') for name in line.decode("utf-8-sig").split(",")]
@@ -22,21 +22,21 @@ def read_header(path: Path, data: bytes) -> List[str]:
 
 
 def read_table(path: Path, data: bytes, wanted: Sequence[str], time: str) -> Columns:
-    """Read columns; empty cells become NaN.
+    """Read columns of numbers; empty cells become NaN.
 
     Parameters
     ----------
     path, data
-        File and its content.
+        Path of the file, and its content.
     wanted
-        Names of the columns; unknown ones are left out.
+        Names of the columns to read; missing columns are skipped.
     time
-        Column with the time, s.
+        Name of the time column.
 
     Raises
     ------
     InputError
-        If the column of the time is missing, or a cell is no number.
+        If the time column is missing, or a cell is not a number.
     """
     header = read_header(path, data)
     if time not in header:

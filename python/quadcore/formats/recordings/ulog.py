@@ -1,7 +1,7 @@
 """ULog files of PX4.
 
-PX4's page on the format describes the frames of messages: two bytes of size, one of the kind, and
-the message. Definitions come first, then the data.
+PX4's page on the format describes the messages. Each has a header of two bytes for the size and one
+for the kind. Definitions precede the data.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ MAGIC = b"ULog\x01\x12\x35"
 
 _HEADER = 16  # bytes before the first message
 _DEFINITIONS = b"BFIMPQ"
-"""Kinds of messages before the data: flags, formats, information, parameters."""
+"""Kinds of messages before the data: flags, formats, information and parameters."""
 _FLAGS, _SUBSCRIPTION = b"B", ord("A")
 _INCOMPATIBLE = 11
-"""Place of the byte of the flags that announces appended data by its first bit."""
-_PART = 2**24  # bytes that are decoded at a time
+"""Index of the flag byte; its first bit announces appended data."""
+_PART = 2**24  # bytes that are decoded at once
 
 
 def read_ulog(path: Path, wanted: Sequence[str]) -> Columns:
-    """Read fields ``TOPIC.FIELD``, or ``TOPIC#1.FIELD`` of the second instance of a topic.
+    """Read fields ``TOPIC.FIELD``, or ``TOPIC#1.FIELD`` for the second instance of a topic.
 
-    The file is decoded in parts, of which only the wanted fields are kept. The times are those of
-    the samples, if the topic contains them.
+    The file is decoded in parts, and only the requested fields are kept. The times are those of the
+    samples if the topic contains them, or else those of the messages.
 
     Raises
     ------
@@ -52,9 +52,9 @@ def read_ulog(path: Path, wanted: Sequence[str]) -> Columns:
     with open_content(path) as stream:
         for part in _split(path, stream):
             try:
-                with contextlib.redirect_stdout(io.StringIO()):  # pyulog prints about damage
+                with contextlib.redirect_stdout(io.StringIO()):  # pyulog prints reports of damage
                     log = ULog(io.BytesIO(part), topics, disable_str_exceptions=True)
-            except Exception as error:  # a broken file makes anything
+            except Exception as error:  # a damaged file can raise any exception
                 raise InputError(f"{path}: the ULog is damaged: {error}.") from error
             if log.file_corruption:
                 raise InputError(f"{path}: the ULog is damaged. Copy the file again.")
@@ -66,7 +66,7 @@ def read_ulog(path: Path, wanted: Sequence[str]) -> Columns:
 
 
 def _take_columns(topic: Any, wanted: Sequence[str], parts: Dict[str, List[np.ndarray]]) -> None:
-    """Add the wanted fields of a topic, and its times, to the parts of columns."""
+    """Append the requested fields of a topic and its times to the parts of each column."""
     name = topic.name if topic.multi_id == 0 else f"{topic.name}#{topic.multi_id}"
     fields = [field for field in topic.data if f"{name}.{field}" in wanted]
     if not fields:
@@ -82,10 +82,10 @@ def _name_time(column: str) -> str:
 
 
 def _split(path: Path, stream: IO[bytes]) -> Iterator[bytes]:
-    """Split a ULog into several of whole messages, each with the definitions and subscriptions."""
+    """Split a ULog into parts of whole messages; each has the definitions and subscriptions."""
     begin, rest = _read_definitions(stream)
     flags = begin[_HEADER + 2 : _HEADER + _INCOMPATIBLE + 1]
-    if flags[:1] == _FLAGS and flags[-1] & 1:  # the flags refer to places in the whole file
+    if flags[:1] == _FLAGS and flags[-1] & 1:  # the flags refer to offsets in the whole file
         yield begin + rest + stream.read()
         return
     while True:
@@ -103,7 +103,7 @@ def _split(path: Path, stream: IO[bytes]) -> Iterator[bytes]:
 
 
 def _read_definitions(stream: IO[bytes]) -> Tuple[bytes, bytes]:
-    """Read the definitions, and the begin of the data behind them."""
+    """Read the definitions, and the start of the data after them."""
     data, at = stream.read(_PART), _HEADER
     while True:
         if at + 3 > len(data):
@@ -118,7 +118,7 @@ def _read_definitions(stream: IO[bytes]) -> Tuple[bytes, bytes]:
 
 
 def _find_last_end(data: bytes, subscriptions: List[bytes]) -> int:
-    """Return the end of the last whole message, and collect the subscriptions before it."""
+    """Return the end of the last complete message, and collect the subscriptions before it."""
     at, end = 0, len(data) - 3
     while at <= end:
         after = at + 3 + data[at] + 256 * data[at + 1]

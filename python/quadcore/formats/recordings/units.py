@@ -1,4 +1,4 @@
-"""Units of logs as factors of SI units."""
+"""Factors from the units of logs to SI units."""
 
 from __future__ import annotations
 
