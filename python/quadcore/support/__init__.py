@@ -1,1 +1,1 @@
-"""Helpers of all layers: arguments, files, interrupts, warnings, rotations."""
+"""Helpers of all layers: arguments, files, interrupts, warnings and rotations."""

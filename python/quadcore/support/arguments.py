@@ -14,20 +14,20 @@ from .._core import InputError
 from .parameters import suggest
 
 Kind = Tuple[Callable[[Any], bool], str]
-"""Predicate of valid values, and their description."""
+"""Predicate that accepts valid values, and description of these values."""
 
-_LONGEST = 1e9  # s, of the wall clock
+_LONGEST = 1e9  # s of wall-clock time
 
 
 def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
-    """Raise `InputError` if an argument has a wrong type.
+    """Raise `InputError` if the type of an argument is wrong.
 
     Parameters
     ----------
     arguments
         Values by name.
     kinds
-        Kinds by name; `OPTIONS` contains those of other names.
+        Kinds by name; `OPTIONS` contains the kinds of names that are missing here.
     """
     for name, value in arguments.items():
         kind = kinds.get(name) or OPTIONS.get(name)
@@ -47,12 +47,12 @@ def or_none(kind: Kind) -> Kind:
 
 
 def to_list(value: Any) -> List[Any]:
-    """Return one or several names or functions as a list."""
+    """Convert one or several names or functions to a list."""
     return [value] if _is_text(value) or callable(value) else list(value)
 
 
 def read_once(value: Any) -> Any:
-    """Return an iterator as a list, and other values unchanged."""
+    """Convert an iterator to a list; other values are returned unchanged."""
     return list(value) if isinstance(value, Iterator) else value
 
 
@@ -74,12 +74,12 @@ def _is_list(value: Any) -> bool:
 
 
 def _is_lasting(value: Any) -> bool:
-    """Return whether a value can be iterated repeatedly."""
+    """Return whether a value can be iterated more than once."""
     return isinstance(value, Iterable) and not isinstance(value, Iterator)
 
 
 def _count_numbers(value: Any) -> int:
-    """Return the number of values of a sequence of finite numbers; 0 for anything else."""
+    """Return the length of a sequence of finite numbers; 0 for any other value."""
     if not _is_lasting(value) or isinstance(value, (str, Mapping)):
         return 0
     numbers = list(value)
@@ -160,7 +160,7 @@ PLACE: Kind = (
 LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
 WHOLE: Kind = (_is_whole, "a whole number")
 MEASURED = "measured"
-"""Computation time of a controller as measured on this machine."""
+"""Value that requests computation times measured on this machine."""
 COMPUTATION_TIME: Kind = (
     lambda value: (
         value in (None, MEASURED) or (isinstance(value, Real) and 0 <= float(value) < math.inf)
@@ -169,7 +169,7 @@ COMPUTATION_TIME: Kind = (
 )
 COUNT: Kind = (_is_count, "a whole number from 1 on")
 FLAG: Kind = (lambda value: isinstance(value, (bool, np.bool_)), "True or False")
-ANY: Kind = (lambda value: True, "")  # checked where it is read
+ANY: Kind = (lambda value: True, "")  # checked when it is read
 PROGRESS: Kind = (callable, "a function that is called as progress(done, total)")
 
 OPTIONS: Dict[str, Kind] = {

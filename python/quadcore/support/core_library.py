@@ -1,4 +1,4 @@
-"""Import of the core, with a hint to the package of a missing system library."""
+"""Import of the core, with a hint if a system library is missing."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import re
 
 
 def find_remedy(message: str) -> str:
-    """Return the package that contains a missing library, from the message of the loader; or "".
+    """Return a hint with the package of a missing library, from the loader's message; else "".
 
-    Debian names packages after files: libode8 contains libode.so.8, and libtinyxml2-9 contains
-    libtinyxml2.so.9.
+    Debian derives package names from file names: libode8 contains libode.so.8, and libtinyxml2-9
+    contains libtinyxml2.so.9.
     """
     missing = re.match(r"((lib[\w+-]*\w)\.so\.([\d.]+)): cannot open shared object file", message)
     if not missing:

@@ -6,9 +6,10 @@ import os
 import threading
 
 LOCK = threading.RLock()
-"""Lock for late imports, and for xacro, which keeps its state in globals.
+"""Lock for late imports, and for xacro, which has global state.
 
-Forks wait for it, because a child would otherwise wait forever for a thread that it does not have.
+A fork waits for this lock. Otherwise the child could wait forever for a thread that exists only in
+the parent.
 """
 
 os.register_at_fork(before=LOCK.acquire, after_in_parent=LOCK.release, after_in_child=LOCK.release)

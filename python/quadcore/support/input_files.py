@@ -1,4 +1,4 @@
-"""Reading of files, with one-line errors."""
+"""Reading of files, with one-line error messages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LARGEST = 10**7
 
 @contextmanager
 def open_file(path: Path) -> Iterator[IO[bytes]]:
-    """Open a regular file; pipes and devices, which could block, are refused.
+    """Open a regular file; pipes and devices, which could block, are rejected.
 
     Raises
     ------
@@ -25,7 +25,7 @@ def open_file(path: Path) -> Iterator[IO[bytes]]:
     """
     try:
         check_regular(path)
-        # Something else may have the name by now: opening a pipe waits for a writer.
+        # The path may have changed since the check, and opening a pipe would wait for a writer.
         with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as stream:
             _check(path, os.fstat(stream.fileno()).st_mode)
             yield stream
@@ -34,12 +34,12 @@ def open_file(path: Path) -> Iterator[IO[bytes]]:
 
 
 def check_regular(path: Path) -> None:
-    """Raise `InputError` unless this is a regular file, for libraries that take only names."""
+    """Raise `InputError` unless a path is a regular file, for libraries that take only paths."""
     try:
         _check(path, path.stat().st_mode)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except ValueError as error:  # a zero byte in the name
+    except ValueError as error:  # the name contains a null byte
         raise InputError(f"{path}: cannot be read: {error}") from error
 
 
@@ -63,14 +63,14 @@ def read_bytes(path: Path, largest: int) -> bytes:
     Raises
     ------
     InputError
-        If the file is larger, or cannot be read; see `open_file`.
+        If the file is larger than this, or cannot be read; see `open_file`.
     """
     with open_file(path) as stream:
         return read_whole(path, stream, largest)
 
 
 def read_whole(path: Path, stream: IO[bytes], largest: int) -> bytes:
-    """Read the rest of an open file; parameters and errors as for `read_bytes`."""
+    """Read the rest of an open file; parameters and errors are those of `read_bytes`."""
     data = stream.read(largest + 1)
     if len(data) > largest:
         raise InputError(
@@ -80,12 +80,12 @@ def read_whole(path: Path, stream: IO[bytes], largest: int) -> bytes:
 
 
 def read_text(path: Path, largest: int = LARGEST) -> str:
-    """Read a UTF-8 file, without its byte-order mark.
+    """Read a UTF-8 file, and remove its byte-order mark.
 
     Raises
     ------
     InputError
-        If the file is not text, or `read_bytes` fails.
+        If the file is not UTF-8 text, or `read_bytes` fails.
     """
     data = read_bytes(path, largest)
     try:

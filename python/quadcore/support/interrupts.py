@@ -1,8 +1,8 @@
-"""Signals that ask a long computation to end.
+"""Signals that request the end of a long computation.
 
 SIGINT (Ctrl-C), SIGTERM (``kill``, ``timeout``, Slurm, ``docker stop``) and SIGHUP (a closed
-terminal) raise the same exception, a KeyboardInterrupt. Code that saves its work on Ctrl-C saves it
-for all three.
+terminal) raise the same exception, which is a KeyboardInterrupt. Code that saves its work on Ctrl-C
+therefore saves it for all three signals.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from typing import Any, Dict, Iterator, List, Optional
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 ENDED = 128
-"""Exit status of a process that a signal ended, less the number of the signal."""
+"""Exit status of a process that a signal ended, minus the number of the signal."""
 
-_HEARD_TWICE = 0.5  # s
-_AGAIN = 0.02  # s; until a signal is sent again that came during the start of a C module
+_HEARD_TWICE = 0.5  # s; signals within this time count as one
+_AGAIN = 0.02  # s; delay before a signal during the start of a C module is sent again
 
 
 class Interrupted(KeyboardInterrupt):
@@ -46,14 +46,14 @@ def exit_status(stop: KeyboardInterrupt) -> int:
 
 @contextmanager
 def raise_on_signals() -> Iterator[None]:
-    """Raise `Interrupted` for each of `SIGNALS` within the block; for the main thread.
+    """Raise `Interrupted` for each of `SIGNALS` within the block; use it in the main thread.
 
     Ignored SIGTERM and SIGHUP stay ignored (``nohup``). SIGINT is always handled, because shells
-    start background jobs with it ignored. After the first signal only a second Ctrl-C raises again,
-    so that work can be saved. Signals within half a second count as one, because ``timeout``
-    signals the process and its group. If other code converts the exception to an error, the block
-    still raises `Interrupted`. Signals wait while a C module starts, because some modules leave the
-    interpreter unable to exit if they are interrupted.
+    start background jobs with ignored SIGINT. After the first signal, only a second Ctrl-C raises
+    again, so that work can be saved. Signals within half a second count as one, because ``timeout``
+    signals both the process and its group. If other code converts the exception to an error, the
+    block still raises `Interrupted`. Signals wait while a C module starts, because the interpreter
+    cannot exit after some interrupted module starts.
     """
     raised: List[Interrupted] = []
     first = 0.0
@@ -100,8 +100,8 @@ def hold_signals() -> Iterator[None]:
     """Defer `SIGNALS` and SIGALRM until the end of the block, except for a second Ctrl-C.
 
     Use it for steps that must be complete, such as the replacement of a file. A deferred signal
-    takes effect even if the block raises an error, unless that is a KeyboardInterrupt. Outside the
-    main thread, where Python runs no handlers, signals are not deferred.
+    takes effect even if the block raises an error, unless that is a KeyboardInterrupt. The block
+    has no effect outside the main thread, because Python runs handlers only there.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -1,4 +1,4 @@
-"""Optional packages."""
+"""Optional packages and the messages for missing ones."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from .._core import InputError
 
 @contextmanager
 def require_package(what: str, package: str, extra: str) -> Iterator[None]:
-    """Convert an import error to a message with the package to install.
+    """Convert an import error to a message that names the package to install.
 
     Parameters
     ----------
     what
-        Feature that needs the package.
+        Feature that requires the package.
     package
         Name of the package.
     extra

@@ -1,4 +1,4 @@
-"""Writing of files, with one-line errors."""
+"""Writing of files, with one-line error messages."""
 
 from __future__ import annotations
 
@@ -16,20 +16,21 @@ _PART = ".part"
 
 
 def printable_name(name: Union[str, Path]) -> str:
-    """Return the name of a file as text; bytes outside UTF-8 are escaped."""
+    """Return a file name as text, with bytes that are not UTF-8 escaped."""
     return os.fsencode(name).decode("utf-8", "backslashreplace")
 
 
 @contextmanager
 def atomic_write(path: Path) -> Iterator[IO[bytes]]:
-    """Open a file for writing, so that the complete file appears or none.
+    """Open a file for writing, so that either the complete file appears or nothing changes.
 
-    The function follows links and keeps the permissions of an existing file.
+    The function follows symbolic links, and keeps the permissions of an existing file.
 
     Raises
     ------
     InputError
-        If the file cannot be written. An existing file is unchanged, and no partial file remains.
+        If the file cannot be written. An existing file does not change, and no partial file
+        remains.
     """
     target = Path(os.path.realpath(str(path)))
     part = name_temporary(target)
@@ -41,7 +42,7 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
         with part.open("wb") as stream:
             yield stream
         if target.exists():
-            import shutil  # is slow to import
+            import shutil  # slow to import
 
             shutil.copymode(str(target), str(part))
         os.replace(part, target)
@@ -53,14 +54,14 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
 
 
 class LineFile:
-    """File that grows by lines and is complete up to its last line at any time.
+    """File to which lines are appended; it is complete up to its last line at any time.
 
     Parameters
     ----------
     path
-        File; a missing file is created.
+        Path of the file. The file is created if it does not exist.
     older
-        Whether to keep the present contents.
+        Whether to keep the existing contents.
 
     Raises
     ------
@@ -77,7 +78,7 @@ class LineFile:
             raise make_write_error(path, error) from error
 
     def keep(self, size: int) -> None:
-        """Truncate the file to a size in bytes, and continue there."""
+        """Truncate the file to a size in bytes, and continue writing there."""
         try:
             self._stream.truncate(size)
             self._stream.seek(size)
@@ -85,18 +86,18 @@ class LineFile:
             raise make_write_error(self._path, error) from error
 
     def lines(self) -> Iterator[bytes]:
-        """Return all lines from the start."""
+        """Yield all lines from the start of the file."""
         self._stream.seek(0)
         with open(self.fileno(), "rb", closefd=False) as stream:
             yield from stream
 
     def parts(self, places: Iterable[Tuple[int, int]]) -> Iterator[bytes]:
-        """Return the bytes at places, each a begin and a length; the write position stays."""
+        """Yield the bytes at places (start, length); the write position does not change."""
         for begin, length in places:
             yield os.pread(self.fileno(), length, begin)
 
     def write(self, lines: bytes) -> None:
-        """Append lines; if the disk is full, complete lines stay.
+        """Append lines; if the disk is full, the complete lines remain.
 
         Raises
         ------
@@ -128,17 +129,17 @@ class LineFile:
 
 
 def encode_text(text: str) -> bytes:
-    """Encode a text in UTF-8; file names in another encoding are escaped."""
+    """Encode a text as UTF-8; file names in another encoding are escaped."""
     return text.encode("utf-8", "backslashreplace")
 
 
 def escape_cell(value: object) -> object:
-    """Escape a text in a CSV table that a spreadsheet would read as a formula."""
+    """Escape a text that a spreadsheet would read as a formula."""
     return f"'{value}" if isinstance(value, str) and value[:1] in tuple("=+-@") else value
 
 
 def make_folder(path: Path) -> None:
-    """Create a folder and its parents, unless they exist.
+    """Create a folder and its parents unless they exist.
 
     Raises
     ------
@@ -152,7 +153,7 @@ def make_folder(path: Path) -> None:
 
 
 def prepare_folder(path: Path, names: Iterable[str]) -> None:
-    """Create a folder, and check that files of these names can be written in it.
+    """Create a folder, and check that files with these names can be written to it.
 
     Raises
     ------
@@ -165,7 +166,7 @@ def prepare_folder(path: Path, names: Iterable[str]) -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Raise `InputError` if a file cannot be written; an older file stays."""
+    """Raise `InputError` if a file cannot be written; an existing file does not change."""
     try:
         if path.is_dir():
             raise InputError(f"{path}: is a folder. Name a file in it.")
@@ -190,7 +191,7 @@ def make_write_error(path: Path, error: OSError) -> InputError:
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove partial files of killed processes next to a file."""
+    """Remove the partial files that killed processes left next to a file."""
     target = Path(os.path.realpath(str(path)))
     for part in target.parent.glob(f"{glob.escape(_make_prefix(target))}*{_PART}"):
         number = part.name[len(_make_prefix(target)) :].partition(".")[0]
@@ -201,14 +202,14 @@ def remove_leftovers(path: Path) -> None:
         except (ProcessLookupError, OverflowError):
             with contextlib.suppress(OSError):
                 part.unlink()
-        except PermissionError:  # the process of another user is running
+        except PermissionError:  # the process of another user is still running
             pass
 
 
 def name_temporary(path: Path, piece: str = "") -> Path:
-    """Return the name of the file in which this process prepares a file, or a piece of it.
+    """Return the path at which this process prepares a file, or a piece of it.
 
-    It is in the same folder, because a rename is atomic only within one file system.
+    The path is in the same folder, because a rename is atomic only within a file system.
     """
     return path.with_name(f"{_make_prefix(path)}{os.getpid()}{piece}{_PART}")
 
@@ -218,5 +219,5 @@ def _make_prefix(path: Path) -> str:
 
 
 def _is_replaceable(path: Path) -> bool:
-    """Return whether a new file may replace a path, which excludes devices and pipes."""
+    """Return whether a new file can replace a path, which is not possible for devices and pipes."""
     return not path.exists() or path.is_file()

@@ -10,7 +10,7 @@ from .. import _core
 
 
 def check_values(who: str, given: Mapping[str, Any]) -> Dict[str, float]:
-    """Return parameters as numbers; the core checks their names and ranges."""
+    """Convert parameters to floats; the core checks their names and ranges."""
     for name, value in given.items():
         if not isinstance(value, (bool, Real)):
             raise _core.InputError(f"{who}: '{name}' is {value!r}. Give a number or a flag.")
@@ -21,12 +21,12 @@ _FLAGS = {"true": 1.0, "false": 0.0}
 
 
 def read_values(who: str, text: str) -> Dict[str, float]:
-    """Read ``KEY=VALUE,...`` with numbers, true and false as values.
+    """Parse ``KEY=VALUE,...``, where each value is a number, true or false.
 
     Raises
     ------
     InputError
-        If the text has another form, or a key occurs twice.
+        If the text has another format, or a key occurs twice.
     """
     read: Dict[str, float] = {}
     for part in filter(None, text.split(",")):
@@ -43,7 +43,7 @@ def read_values(who: str, text: str) -> Dict[str, float]:
 
 
 def write_docstring(summary: str, table: Iterable[_core.ParameterSpec], more: str = "") -> str:
-    """Write the docstring of a function with these parameters."""
+    """Write the docstring of a function with the parameters of a table."""
     lines = [summary[0].upper() + summary[1:] + ".", "", "Parameters", "----------"]
     lines += [more] if more else []
     for spec in table:
@@ -60,7 +60,7 @@ def write_docstring(summary: str, table: Iterable[_core.ParameterSpec], more: st
 def make_signature(
     function: Callable[..., Any], table: Iterable[_core.ParameterSpec]
 ) -> inspect.Signature:
-    """Return the signature of a function, with the parameters of a table for ``**parameters``."""
+    """Return the signature of a function in which a table's parameters replace ``**parameters``."""
     signature = inspect.signature(function)
     own = [each for each in signature.parameters.values() if each.kind is not each.VAR_KEYWORD]
     named = [
@@ -75,15 +75,15 @@ def make_signature(
     return signature.replace(parameters=[*own, *named])
 
 
-_CLOSE = 0.7  # of difflib's measure, from 0 to 1
+_CLOSE = 0.7  # minimum similarity of difflib, from 0 to 1
 
 
 def suggest(name: str, known: Sequence[str]) -> str:
-    """Return " Did you mean 'x'?" for the closest known name, or "" if none is close.
+    """Return " Did you mean 'x'?" for the closest known name; "" if no name is close.
 
-    Leading dashes of options do not count.
+    Leading dashes of options are ignored.
     """
-    import difflib  # is slow to import
+    import difflib  # slow to import
 
     bare = {each.lstrip("-"): each for each in known}
     near = difflib.get_close_matches(name.lstrip("-"), bare, 1, _CLOSE)

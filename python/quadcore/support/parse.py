@@ -1,4 +1,4 @@
-"""Read the values of command-line options from text."""
+"""Parsers for the values of command-line options."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .arguments import MEASURED
 
 
 def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
-    """Return a function that splits ``KEY=VALUE`` into the two groups of `pattern`."""
+    """Return a parser that splits ``KEY=VALUE`` into the two groups of `pattern`."""
 
     def parse(text: str) -> tuple[str, str]:
         match = re.fullmatch(pattern, text, re.DOTALL)
@@ -23,7 +23,7 @@ def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
 
 
 def several(names: Sequence[str]) -> Callable[[str], list[str]]:
-    """Return the reader of comma-separated names from a list."""
+    """Return a parser for comma-separated names from a list."""
 
     def parse(text: str) -> list[str]:
         for name in text.split(","):
@@ -37,12 +37,12 @@ def several(names: Sequence[str]) -> Callable[[str], list[str]]:
 
 
 def names(text: str) -> list[str]:
-    """Read comma-separated names."""
+    """Parse comma-separated names."""
     return _named(text, text.split(","))
 
 
 def several_calls(text: str) -> list[str]:
-    """Read comma-separated names, optionally as ``NAME:KEY=VALUE,KEY=VALUE``."""
+    """Parse comma-separated names, optionally as ``NAME:KEY=VALUE,KEY=VALUE``."""
     found: list[str] = []
     for part in text.split(","):
         if found and "=" in part and ":" not in part.partition("=")[0]:
@@ -61,12 +61,12 @@ def _named(text: str, found: list[str]) -> list[str]:
 
 
 def positive_numbers(text: str) -> list[float]:
-    """Read comma-separated numbers."""
+    """Parse comma-separated positive numbers."""
     return list(dict.fromkeys(positive(part) for part in text.split(",")))
 
 
 def positive(text: str) -> float:
-    """Read a number greater than 0."""
+    """Parse a number greater than 0."""
     value = finite(text)
     if value <= 0:
         raise argparse.ArgumentTypeError(f"{text} is not greater than 0")
@@ -74,7 +74,7 @@ def positive(text: str) -> float:
 
 
 def not_negative(text: str) -> float:
-    """Read a number that is at least 0."""
+    """Parse a number of at least 0."""
     value = finite(text)
     if value < 0:
         raise argparse.ArgumentTypeError(f"{text} is less than 0")
@@ -82,12 +82,12 @@ def not_negative(text: str) -> float:
 
 
 def computation_time(text: str) -> float | str:
-    """Read a number that is at least 0, or the word ``measured``."""
+    """Parse a number of at least 0, or the word ``measured``."""
     return text if text == MEASURED else not_negative(text)
 
 
 def finite(text: str) -> float:
-    """Read a finite number."""
+    """Parse a finite number."""
     value = parse_number(text)
     if value is None:
         raise argparse.ArgumentTypeError(f"'{text}' is not a finite number")
@@ -95,7 +95,7 @@ def finite(text: str) -> float:
 
 
 def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
-    """Return the reader of a whole number."""
+    """Return a parser for an integer from `lowest` to `highest`."""
 
     def parse(text: str) -> int:
         if not re.fullmatch(r"[0-9]+", text) or int(text) < lowest:
@@ -108,17 +108,17 @@ def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
 
 
 def pose(text: str) -> tuple[float, ...]:
-    """Read ``x,y,z[,roll,pitch,yaw]``, separated by commas or spaces."""
+    """Parse ``x,y,z[,roll,pitch,yaw]``, separated by commas or spaces."""
     return _numbers(text, "x,y,z[,roll,pitch,yaw]", (3, 6))
 
 
 def vector(text: str) -> tuple[float, ...]:
-    """Read ``x,y,z``, separated by commas or spaces."""
+    """Parse ``x,y,z``, separated by commas or spaces."""
     return _numbers(text, "x,y,z", (3,))
 
 
 def location(text: str) -> tuple[float, ...]:
-    """Read ``latitude,longitude[,altitude]``, separated by commas or spaces."""
+    """Parse ``latitude,longitude[,altitude]``, separated by commas or spaces."""
     return _numbers(text, "latitude,longitude[,altitude]", (2, 3))
 
 

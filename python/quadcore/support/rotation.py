@@ -6,7 +6,7 @@ import numpy as np
 
 
 def to_roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
-    """Return roll phi, pitch theta and yaw psi, where R = Rz(psi) Ry(theta) Rx(phi).
+    """Return roll phi, pitch theta and yaw psi, with R = Rz(psi) Ry(theta) Rx(phi).
 
     Parameters
     ----------
@@ -25,14 +25,14 @@ def to_roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
 
 
 def to_yaw(orientation: np.ndarray) -> np.ndarray:
-    """Return the yaw of `to_roll_pitch_yaw`, rad; shape (...)."""
+    """Return the yaw angle of `to_roll_pitch_yaw`, rad; shape (...)."""
     x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
     yaw: np.ndarray = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
     return yaw
 
 
 def compute_tilts(orientation: np.ndarray) -> np.ndarray:
-    """Return the angles between the z axes of frame and world, rad.
+    """Return the angles between the z axes of the frame and the world, rad.
 
     Parameters
     ----------
@@ -40,26 +40,26 @@ def compute_tilts(orientation: np.ndarray) -> np.ndarray:
         Unit quaternions x, y, z, w of the frame in the world.
     """
     x, y = orientation[:, 0], orientation[:, 1]
-    # From the quaternion: exact near 0.
+    # The formula with the quaternion is exact near 0.
     tilts: np.ndarray = 2 * np.arcsin(np.minimum(1, np.hypot(x, y)))
     return tilts
 
 
 def unwrap_angles(angles: np.ndarray) -> np.ndarray:
-    """Remove the jumps from roll, pitch and yaw of a motion.
+    """Remove the jumps from the roll, pitch and yaw angles of a motion.
 
-    An attitude has two triples of angles, ``(r, p, y)`` and ``(r + pi, pi - p, y + pi)``, plus
-    multiples of 2 pi. Each row takes the values closest to the row before.
+    An attitude has two equivalent triples of angles, ``(r, p, y)`` and ``(r + pi, pi - p, y +
+    pi)``, plus multiples of 2 pi. In each row, the values closest to the previous row are used.
 
     Parameters
     ----------
     angles : ndarray (rows, 3)
-        Angles of `to_roll_pitch_yaw`, rad.
+        Roll, pitch and yaw from `to_roll_pitch_yaw`, rad.
 
     Returns
     -------
     ndarray (rows, 3)
-        Angles, rad; pitch may leave [-pi/2, pi/2].
+        Roll, pitch and yaw without jumps, rad; pitch may exceed [-pi/2, pi/2].
     """
     stays = _measure_distance(angles[1:], angles[:-1]) <= _measure_distance(
         _flip(angles[1:]), angles[:-1]
@@ -70,7 +70,7 @@ def unwrap_angles(angles: np.ndarray) -> np.ndarray:
 
 
 def subtract_angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Subtract roll, pitch and yaw of the closest triples, rad; shape (rows, 3)."""
+    """Subtract roll, pitch and yaw, using the nearer equivalent triples, rad; shape (rows, 3)."""
     is_near = _measure_distance(one, other) <= _measure_distance(_flip(one), other)
     nearest = np.where(is_near[:, None], one, _flip(one))
     return _wrap(nearest - other)
@@ -102,7 +102,7 @@ def to_matrix(orientation: np.ndarray) -> np.ndarray:
     ndarray, shape (..., 3, 3)
     """
     values = np.asarray(orientation, dtype=float)
-    is_single = values.ndim == 1  # numbers are ten times faster than arrays of one
+    is_single = values.ndim == 1  # ten times faster with floats than with arrays of length one
     x, y, z, w = values.tolist() if is_single else np.moveaxis(values, -1, 0)
     entries = [
         *[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -115,12 +115,12 @@ def to_matrix(orientation: np.ndarray) -> np.ndarray:
 
 
 def compose_roll_pitch_yaw(angles: np.ndarray) -> np.ndarray:
-    """Return the matrix Rz(yaw) Ry(pitch) Rx(roll) of an origin in a URDF.
+    """Return the matrix Rz(yaw) Ry(pitch) Rx(roll) of a URDF origin.
 
     Parameters
     ----------
     angles : ndarray (3,)
-        Roll, pitch, yaw, rad.
+        Roll, pitch and yaw, rad.
 
     Returns
     -------
@@ -137,7 +137,7 @@ def compose_roll_pitch_yaw(angles: np.ndarray) -> np.ndarray:
 
 
 def compute_rotation_vector(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Return the rotation vector from one orientation to another, in the axes of the first, rad.
+    """Return the rotation vector from one orientation to another, in axes of the first, rad.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def compute_rotation_vector(first: np.ndarray, second: np.ndarray) -> np.ndarray
 
 
 def turn(orientation: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Rotate a body about an axis in body axes.
+    """Rotate a body by a rotation vector in body axes.
 
     Parameters
     ----------

@@ -23,15 +23,15 @@ class SplitName(NamedTuple):
     """Parts of the name of a user-defined controller."""
 
     place: str
-    """Module, or file that ends in .py or .so."""
+    """Module, or path that ends in .py or .so."""
     name: str
-    """Name in it; "" if it is not given."""
+    """Name of the object in the module or file; "" if none is given."""
     values: str
     """Parameters as ``KEY=VALUE,...``."""
 
 
 def split_name(text: str) -> SplitName:
-    """Split ``MODULE:NAME`` or ``FILE.py[:NAME]``, each with an optional ``:KEY=VALUE,...``."""
+    """Split ``MODULE:NAME`` or ``FILE.py[:NAME]``, optionally followed by ``:KEY=VALUE,...``."""
     head, colon, values = text.rpartition(":")
     if not (colon and "=" in values):
         head, values = text, ""
@@ -47,7 +47,7 @@ def names_file(text: str) -> bool:
 
 
 def find_controller(text: str, make: Callable[[Any], Any]) -> Any:
-    """Import a controller, as `find_object` does; raises also if it cannot be called as one."""
+    """Import a controller as `find_object` does; also raise `InputError` if it is not callable."""
     controller = find_object(f"controller '{text}'", text, make)
     if not callable(controller):
         raise InputError(f"controller '{text}': it cannot be called as {_FORM}. Define it so.")
@@ -55,22 +55,22 @@ def find_controller(text: str, make: Callable[[Any], Any]) -> Any:
 
 
 def find_object(who: str, text: str, make: Callable[[Any], Any]) -> Any:
-    """Import an object of the user.
+    """Import a user-defined object.
 
     Parameters
     ----------
     who
-        Kind and name for messages.
+        Kind and name of the object for messages.
     text
-        Name as for `split_name`. Modules in the working folder are found. A file without NAME must
-        define one class with a method ``__call__``, or one function, that is a controller.
+        Name, as for `split_name`. Modules in the working folder can be imported. A file without
+        NAME must define exactly one controller: a class with a method ``__call__``, or a function.
     make
-        Makes the result from the class or object that has been found.
+        Function that makes the result from the imported class or object.
 
     Raises
     ------
     InputError
-        If there is no such module, file or name, or its code fails.
+        If the module, the file or the name does not exist, or its code fails.
     """
     place, name, _ = split_name(text)
     if not place:
@@ -85,7 +85,7 @@ def find_object(who: str, text: str, make: Callable[[Any], Any]) -> Any:
             return make(find(who, place, name))
     except (InputError, KeyboardInterrupt, MemoryError):
         raise
-    except BaseException as error:  # SystemExit, too
+    except BaseException as error:  # includes SystemExit
         raise InputError(f"{who}: {describe_error(error)}") from error
 
 
@@ -136,14 +136,14 @@ def _takes_three(function: Callable[..., Any]) -> bool:
 
 
 def _import_file(file: str) -> ModuleType:
-    """Import a file, unless that was done."""
+    """Import a file unless it is already imported."""
     path = os.path.realpath(file)
-    name = f"quadcore controller {path}"  # hides no module of another name
+    name = f"quadcore controller {path}"  # cannot hide a module with another name
     if name not in sys.modules:
         spec = importlib.util.spec_from_file_location(name, path)
-        assert spec is not None and spec.loader is not None  # as the suffix is .py
+        assert spec is not None and spec.loader is not None  # because the suffix is .py
         module = importlib.util.module_from_spec(spec)
-        sys.modules[name] = module  # dataclasses look their module up
+        sys.modules[name] = module  # dataclasses look up their module
         try:
             spec.loader.exec_module(module)
         except BaseException:
@@ -154,7 +154,7 @@ def _import_file(file: str) -> ModuleType:
 
 @contextmanager
 def _importing_from(folder: str) -> Iterator[None]:
-    """Find modules in a folder first."""
+    """Search a folder first for modules during the block."""
     sys.path.insert(0, folder)
     try:
         yield
@@ -164,7 +164,7 @@ def _importing_from(folder: str) -> Iterator[None]:
 
 
 def describe_error(error: BaseException) -> str:
-    """Describe in one line what was raised, and where."""
+    """Describe an exception and its source line in one line."""
     if isinstance(error, SyntaxError) and error.filename:
         kind, reason, file, line = type(error).__name__, error.msg, error.filename, error.lineno
     else:

@@ -23,7 +23,7 @@ SPAWN = (0.0, 0.0, 10.0)
 
 
 def check_whole(seed: object, name: str = "seed", bits: int = 64) -> int:
-    """Return a seed or another whole number; raises `InputError` unless it fits the bits."""
+    """Return a seed or another integer; raise `InputError` if it exceeds this number of bits."""
     is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
     if not is_whole or not 0 <= seed < 2**bits:  # type: ignore[operator]
         raise _core.InputError(
@@ -33,7 +33,7 @@ def check_whole(seed: object, name: str = "seed", bits: int = 64) -> int:
 
 
 def format_value(value: Value) -> str:
-    """Return the text of a parameter as in a URDF."""
+    """Format the value of a parameter as in a URDF."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, (bool, np.bool_)):
@@ -49,7 +49,7 @@ def format_value(value: Value) -> str:
 
 
 def check_pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
-    """Return an initial pose as x, y, z, roll, pitch, yaw; raises `InputError` if it is wrong."""
+    """Return an initial pose as x, y, z, roll, pitch, yaw; raise `InputError` if it is invalid."""
     try:
         given = [_to_number(value) for value in spawn]
     except (TypeError, ValueError):
@@ -71,7 +71,7 @@ def _to_number(value: Number) -> float:
 
 
 def check_poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
-    """Return the initial poses of n vehicles from one pose or n poses; shape (n, 6)."""
+    """Return the initial poses (n, 6) of n vehicles from one pose or n poses."""
     try:
         given = np.atleast_2d(np.asarray(spawn, dtype=float))
     except (TypeError, ValueError):
@@ -87,13 +87,13 @@ def check_poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
 
 
 def check_seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
-    """Return the seeds of n vehicles, which count up from a single seed."""
+    """Return the seeds of n vehicles; a single seed is counted up."""
     if isinstance(seed, (int, np.integer)):
         first = check_whole(seed)
         return np.array([(first + i) % 2**64 for i in range(n)], np.uint64)
     try:
         given = np.asarray(seed)
-    except ValueError:  # rows of several lengths
+    except ValueError:  # rows of different lengths
         given = np.empty((0, 0))
     if given.shape != (n,):
         raise _core.InputError(

@@ -8,11 +8,11 @@ from typing import Iterator
 
 
 class QuadcoreWarning(UserWarning):
-    """Valid but suspicious input."""
+    """Warning about valid but suspicious input."""
 
 
 def warn(message: str) -> None:
-    """Issue a warning at the line that called the package."""
+    """Issue a warning at the line from which the package was called."""
     frame, level = sys._getframe(1), 2
     while _is_own(frame) and frame.f_back is not None:
         frame, level = frame.f_back, level + 1
@@ -21,12 +21,12 @@ def warn(message: str) -> None:
 
 def _is_own(frame: FrameType) -> bool:
     name = str(frame.f_globals.get("__name__"))
-    return name.partition(".")[0] in ("quadcore", "xacro")  # xacro warns through this module
+    return name.partition(".")[0] in ("quadcore", "xacro")  # xacro warns via this module
 
 
 @contextmanager
 def suppress_warnings() -> Iterator[None]:
-    """Suppress warnings within the block; simulations still list them."""
+    """Suppress warnings within the block; the lists of warnings still contain them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", QuadcoreWarning)
         yield

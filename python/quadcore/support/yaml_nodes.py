@@ -1,4 +1,4 @@
-"""Reading of YAML files by nodes, for error messages with lines."""
+"""Reading of YAML files as nodes, so that error messages can contain lines."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SCALAR = "tag:yaml.org,2002:"
 
 
 def read_root(path: Path) -> yaml.Node:
-    """Read a file; raises `InputError` if it is missing or not YAML."""
+    """Read the root node of a file; raise `InputError` if the file is missing or not YAML."""
     try:
         return yaml.compose(read_text(path), yaml.SafeLoader)
     except yaml.YAMLError as error:
@@ -30,7 +30,7 @@ def read_root(path: Path) -> yaml.Node:
 def read_pairs(
     path: Union[str, Path], node: Any, what: str
 ) -> Iterator[Tuple[yaml.ScalarNode, yaml.Node]]:
-    """Return keys and values of a mapping; raises `InputError` if the node is something else."""
+    """Yield the keys and values of a mapping; raise `InputError` if the node is not a mapping."""
     if not isinstance(node, yaml.MappingNode):
         raise InputError(f"{path}:{find_line(node) if node else 1}: write {what}")
     names = set()
@@ -44,25 +44,25 @@ def read_pairs(
 
 
 def read_scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
-    """Return the text of a value; raises `InputError` if the node is something else."""
+    """Return the text of a value; raise `InputError` if the node is not a value."""
     where = f"{path}:{find_line(node)}"
     if not isinstance(node, yaml.ScalarNode):
         kind = "a list" if isinstance(node, yaml.SequenceNode) else "a mapping"
         raise InputError(f"{where}: {name} is {kind} here. Write a value, or a list of values.")
     if node.tag == f"{_SCALAR}null":
         raise InputError(f"{where}: {name} is empty. Write a value, or remove the line.")
-    if node.tag == f"{_SCALAR}bool":  # yes and on are others
+    if node.tag == f"{_SCALAR}bool":  # includes yes and on
         return "true" if yaml.SafeLoader.bool_values[node.value.lower()] else "false"
     return str(node.value)
 
 
 def read_numbers(path: Union[str, Path], name: str, node: yaml.Node, count: int) -> str:
-    """Return `count` numbers with spaces between them, or a text if `count` is 0.
+    """Return `count` numbers separated by spaces, or a text if `count` is 0.
 
     Raises
     ------
     InputError
-        If the node is something else.
+        If the node has other contents.
     """
     items = node.value if isinstance(node, yaml.SequenceNode) else [node]
     texts = [read_scalar(path, name, item) for item in items]
@@ -76,6 +76,6 @@ def read_numbers(path: Union[str, Path], name: str, node: yaml.Node, count: int)
 
 
 def find_line(node: yaml.Node) -> int:
-    """Return the line of a node, from 1."""
+    """Return the line number of a node, starting at 1."""
     at: int = node.start_mark.line + 1
     return at
