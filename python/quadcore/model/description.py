@@ -16,7 +16,7 @@ from . import resources, xml_source
 from .earth import check_location, place_world
 
 _XACRO = (".xacro", ".gazebo")
-"""Suffixes of xacro files; RotorS uses the second."""
+"""Suffixes of xacro files; RotorS uses the second one."""
 
 
 def read_model(
@@ -24,9 +24,9 @@ def read_model(
     xacro_args: Optional[Mapping[str, object]] = None,
     ignore: Sequence[str] = (),
 ) -> Model:
-    """Read a model once, for any number of simulations.
+    """Read a model once for any number of simulations.
 
-    The result contains the text of the model and no path, so that it can be pickled.
+    The result contains the text of the model but no path, so it can be pickled.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def read_model(
     xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
     ignore : sequence of str, default ()
-        As for `Simulation`. Names that do not occur are an error once the model is simulated.
+        As for `Simulation`. A name that does not occur causes an error when the model is simulated.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def read_model(
     Raises
     ------
     InputError
-        If the model is wrong; the message begins with ``FILE:LINE``.
+        If the model is invalid; the message begins with ``FILE:LINE``.
     """
     check({"model": model, "xacro_args": xacro_args}, {"model": NAME})
     arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
@@ -59,7 +59,7 @@ def read_world(
     ignore: Sequence[str] = (),
     at: Optional[Sequence[float]] = None,
 ) -> World:
-    """Read a world once, for any number of simulations.
+    """Read a world once for any number of simulations.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ def read_world(
     ignore : sequence of str, default ()
         As for `read_model`.
     at : sequence of 2 or 3 numbers, optional
-        Latitude and longitude of the world's origin, deg, and its altitude above the sea, m
-        (default 0). Sets the gravity (WGS 84), the magnetic field (World Magnetic Model) and the
-        origin of GPS receivers. Default: those of the world.
+        Latitude and longitude of the world's origin, deg, and altitude above sea level, m (default
+        0). They define the gravity (WGS 84), the magnetic field (World Magnetic Model) and the
+        origin of GPS receivers. Default: the values of the world.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def read_world(
     Raises
     ------
     InputError
-        If the world is wrong; the message begins with ``FILE:LINE``.
+        If the world is invalid; the message begins with ``FILE:LINE``.
     """
     check({"world": world, "at": at}, {**OPTIONS, "at": or_none(PLACE)})
     document = load_world(None if world is None else str(world))
@@ -93,7 +93,7 @@ def read_world_once(
     ignore: Sequence[str],
     at: Optional[Sequence[float]],
 ) -> World:
-    """Read a world as `read_world`, unless it is read already."""
+    """Read a world as `read_world` does, unless it is already read."""
     if not isinstance(world, World):
         return read_world(world, ignore, at)
     if at is not None:
@@ -108,12 +108,12 @@ def read_both(
     ignore: Sequence[str],
     at: Optional[Sequence[float]] = None,
 ) -> Tuple[Model, World]:
-    """Read a model and a world, except for those that are read already.
+    """Read a model and a world, unless they are already read.
 
     Raises
     ------
     InputError
-        If one of them is wrong, or a name to ignore occurs in neither.
+        If the model or the world is invalid, or a name to ignore occurs in neither.
     """
     names = check_names_argument("ignore", ignore)
     if not isinstance(model, Model):
@@ -126,14 +126,14 @@ def read_both(
 
 
 def check_names_argument(argument: str, names: Sequence[str]) -> list[str]:
-    """Return the names of an argument, which may be an iterator, as a list."""
+    """Return the names in an argument as a list; the argument can be an iterator."""
     names = read_once(names)
     check({argument: names}, {argument: LIST})
     return list(map(str, names))
 
 
 def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
-    """Read the text of a model, and expand it if it is a xacro file.
+    """Read the text of a model; a xacro file is expanded.
 
     Parameters
     ----------
@@ -145,8 +145,7 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
     Raises
     ------
     InputError
-        If the model does not exist, the XML or xacro is wrong, or the file does not have an
-        argument.
+        If the model does not exist, the XML or xacro is invalid, or the file lacks an argument.
     """
     path = _find("model", model, "urdf")
     if path.suffix not in _XACRO:
@@ -155,7 +154,7 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
                 f"{path}: takes no xacro arguments, as it is not a .xacro file. Leave them out."
             )
         return _plain(path)
-    # Only models that need it pay for importing xacro.
+    # xacro is imported only for models that need it.
     with LOCK:
         from .xacro_expansion import expand
 
@@ -168,9 +167,9 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
 
 
 def list_xacro_arguments(model: Union[str, Path], given: Mapping[str, object]) -> Dict[str, str]:
-    """Return the value of each argument of a xacro file, given or default.
+    """Return the given or default value of each argument of a xacro file.
 
-    A file that is not a xacro file has no arguments.
+    Any other file has no arguments.
 
     Raises
     ------
@@ -187,7 +186,7 @@ def list_xacro_arguments(model: Union[str, Path], given: Mapping[str, object]) -
 
 
 def load_world(world: str | None) -> Document:
-    """Read the text of a world file or a built-in world; None stands for ``"empty"``.
+    """Read the text of a world file or a built-in world; None selects ``"empty"``.
 
     Raises
     ------

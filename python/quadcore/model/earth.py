@@ -1,4 +1,4 @@
-"""Location of a world on the Earth: gravity, magnetic field, and origin of GPS receivers."""
+"""Location of a world on Earth: gravity, magnetic field, and origin of GPS receivers."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from .._core import InputError, World, read_world
 from ..support.optional_packages import require_package
 from .world_text import change_world_text, find_children
 
-_YEAR = 2026.0  # of the World Magnetic Model
+_YEAR = 2026.0  # date for the World Magnetic Model
 _METRES_PER_DEGREE = 111319.49  # at the equator, 2 pi 6378137 m / 360
 
-# Formula of Somigliana with constants of WGS 84 (NIMA TR8350.2, equation 4-1)
+# Somigliana's formula with the constants of WGS 84 (NIMA TR8350.2, equation 4-1)
 _GRAVITY, _GROWTH, _ECCENTRICITY = 9.7803253359, 0.00193185265241, 0.00669437999013
 _FREE_AIR = 3.086e-6  # 1/s^2; decrease of gravity with altitude
 
@@ -23,17 +23,17 @@ _PLACE = ("latitude_deg", "longitude_deg", "elevation")
 
 
 class Location(NamedTuple):
-    """Location of the world's origin; x is east, y is north."""
+    """Location of the world's origin, where x is east and y is north."""
 
     latitude: float = 47.3977
-    """deg"""
+    """Latitude, deg."""
     longitude: float = 8.5456
-    """deg"""
+    """Longitude, deg."""
     altitude: float = 488.0
-    """m above the sea"""
+    """Altitude above sea level, m."""
 
     def locate(self, east: float, north: float, up: float) -> Tuple[float, float, float]:
-        """Return latitude (deg), longitude (deg) and altitude (m) of a point on the flat Earth.
+        """Return latitude (deg), longitude (deg) and altitude (m) of a point, for a flat Earth.
 
         Parameters
         ----------
@@ -49,12 +49,12 @@ class Location(NamedTuple):
 
 
 def check_location(at: Sequence[float]) -> Location:
-    """Return a location from latitude and longitude (deg), and perhaps an altitude (m).
+    """Make a location from latitude and longitude (deg), and optionally altitude (m).
 
     Raises
     ------
     InputError
-        If they are not on the Earth.
+        If the location is not on Earth.
     """
     location = Location(*(float(part) for part in (*at, 0.0)[:3]))
     if abs(location.latitude) > 90 or abs(location.longitude) > 180:
@@ -66,7 +66,7 @@ def check_location(at: Sequence[float]) -> Location:
 
 
 def find_gravity(location: Location) -> float:
-    """Return the normal gravity of WGS 84, less the decrease with altitude, m/s^2."""
+    """Return the normal gravity of WGS 84 minus its decrease with altitude, m/s^2."""
     s = math.sin(math.radians(location.latitude)) ** 2
     return _GRAVITY * (1 + _GROWTH * s) / math.sqrt(1 - _ECCENTRICITY * s) - (
         _FREE_AIR * location.altitude
@@ -79,7 +79,7 @@ def find_magnetic_field(location: Location) -> np.ndarray:
     Returns
     -------
     ndarray (3,)
-        Field in axes east, north, up, T.
+        Field in east, north, up axes, T.
 
     Raises
     ------
@@ -95,8 +95,8 @@ def find_magnetic_field(location: Location) -> np.ndarray:
 
 
 def find_location(world: World) -> Location:
-    """Return the location that a world states in <spherical_coordinates>, or the default."""
-    from xml.etree import ElementTree  # takes 6 ms to import
+    """Return the location in the <spherical_coordinates> of a world, or the default location."""
+    from xml.etree import ElementTree  # its import takes 6 ms
 
     text = world.document.text
     for child in find_children(text)[0]:
@@ -107,7 +107,7 @@ def find_location(world: World) -> Location:
 
 
 def place_world(world: World, location: Location) -> World:
-    """Return a world at a location, with the gravity and magnetic field of the Earth there."""
+    """Return the world at a location, with the gravity and magnetic field of this location."""
     east, north, up = find_magnetic_field(location).tolist()
     origin = "".join(f"<{name}>{value!r}</{name}>" for name, value in zip(_PLACE, location))
     elements = {

@@ -13,11 +13,11 @@ from ..support.input_files import LARGEST, read_bytes
 Expansion = TypeVar("Expansion")
 Answer = TypeVar("Answer")
 
-_MOST = 256  # a study of an argument of xacro asks for each of its values again and again
+_MOST = 256  # a study over a xacro argument expands the file repeatedly for each value
 
 
 class Dependencies:
-    """Values outside the text that an expansion depends on, such as environment variables."""
+    """Values other than the text on which an expansion depends, such as environment variables."""
 
     def __init__(self) -> None:
         self.may_be_kept = True
@@ -30,15 +30,15 @@ class Dependencies:
         return answer
 
     def is_the_same(self) -> bool:
-        """Return whether all dependencies have the same values now."""
+        """Return whether the values of all dependencies are unchanged."""
         try:
             return all(question(subject) == answer for question, subject, answer in self._answers)
-        except Exception:  # the expansion will say what
+        except Exception:  # the expansion reports the error
             return False
 
 
 def read_content(path: str) -> Optional[bytes]:
-    """Return the contents of a regular file, or None if it cannot be read."""
+    """Return the contents of a regular file; None if it cannot be read."""
     try:
         return read_bytes(Path(path), LARGEST)
     except InputError:
@@ -48,7 +48,7 @@ def read_content(path: str) -> Optional[bytes]:
 def _get_working_folder() -> str:
     try:
         return os.getcwd()
-    except OSError:  # it was removed
+    except OSError:  # the folder was removed
         return ""
 
 
@@ -64,7 +64,7 @@ class ExpansionCache(Generic[Expansion]):
         self._entries: OrderedDict[Any, _Entry] = OrderedDict()
 
     def get(self, key: Any, expand: Callable[[Dependencies], Expansion]) -> Expansion:
-        """Return the cached value if its dependencies are unchanged, or else expand(outside)."""
+        """Return the cached value if its dependencies are unchanged, else the value of `expand`."""
         key = (_get_working_folder(), key)
         entry = self._entries.pop(key, None)
         if entry is None or not entry.outside.is_the_same():

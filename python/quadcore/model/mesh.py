@@ -12,7 +12,7 @@ from ..support.input_files import check_regular, is_file
 from ..support.optional_packages import require_package
 
 _SUFFIXES = (".stl", ".obj", ".dae")
-_MOST_FACES = 200_000  # of one mesh: a page with more would be slow to open
+_MOST_FACES = 200_000  # maximum number of faces of a mesh; a page with more would load slowly
 
 
 def read_mesh(filename: str, folder: Path) -> Tuple[np.ndarray, np.ndarray]:
@@ -21,21 +21,21 @@ def read_mesh(filename: str, folder: Path) -> Tuple[np.ndarray, np.ndarray]:
     Parameters
     ----------
     filename
-        As in a URDF: ``package://PACKAGE/PATH``, ``file://PATH`` or a path.
+        File name as in a URDF: ``package://PACKAGE/PATH``, ``file://PATH`` or a path.
     folder
-        Folder that a relative path starts at.
+        Folder to which relative paths refer.
 
     Returns
     -------
     vertices : ndarray (n, 3)
-        Corners in the axes and units of the file.
+        Vertices in the axes and units of the file.
     faces : ndarray (m, 3)
-        Corners of each triangle.
+        Indices of the vertices of each triangle.
 
     Raises
     ------
     InputError
-        If the file is missing or is no mesh, or a package to read it is not installed.
+        If the file is missing or is not a mesh, or a package to read it is not installed.
     """
     path = _find_file(filename, folder)
     if path.suffix.lower() not in _SUFFIXES:
@@ -51,7 +51,7 @@ def read_mesh(filename: str, folder: Path) -> Tuple[np.ndarray, np.ndarray]:
     try:
         mesh: Any = trimesh.load(str(path), force="mesh")
         vertices, faces = np.asarray(mesh.vertices, float), np.asarray(mesh.faces, int)
-    except Exception as error:  # the readers raise whatever a damaged file causes
+    except Exception as error:  # a damaged file can raise any exception
         raise InputError(f"{path}: cannot be read as a mesh ({error}). Export it again.") from None
     if not 0 < len(faces) <= _MOST_FACES or not np.isfinite(vertices).all():
         raise InputError(

@@ -1,4 +1,4 @@
-"""Obstacles of a world as the player draws them."""
+"""Obstacles of a world in the form that the player draws."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _LENGTHS = {"box": 3, "cylinder": 2, "sphere": 1}
 
 
 def draw_world(world: World) -> DrawnWorld:
-    """Return the ground and the obstacles of a world, except infinite planes and meshes."""
+    """Return the ground and the obstacles of a world, except for infinite planes and meshes."""
     shapes = []
     for obstacle in world.obstacles:
         if obstacle.kind not in _LENGTHS:
@@ -28,7 +28,7 @@ def draw_world(world: World) -> DrawnWorld:
 
 
 def join_worlds(worlds: Sequence[DrawnWorld]) -> DrawnWorld:
-    """Return the ground and the obstacles of several worlds, each obstacle once."""
+    """Return the ground and the obstacles of several worlds, without duplicates."""
     obstacles = {
         (shape.kind, shape.size, shape.pose.tobytes()): shape
         for world in worlds

@@ -1,4 +1,4 @@
-"""Overrides that are not tags of plugins: xacro.ARG, and numbers of links such as LINK.mass."""
+"""Overrides that are not plugin tags: xacro.ARG, and values of links such as LINK.mass."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ _NUMBER = re.compile(rb"[^\s\"']+")
 
 
 class LinkValue(NamedTuple):
-    """Number in the ``<inertial>`` of a link.
+    """Number in the ``<inertial>`` element of a link.
 
     Attributes
     ----------
     element, attribute : str
-        Element and its attribute.
+        Name of the XML element, and name of its attribute.
     place : int
-        Place among the numbers of the attribute.
+        Index among the numbers of the attribute.
     unit, meaning : str
-        For tables.
+        Unit and meaning for tables.
     is_signed : bool
-        Whether it may be negative.
+        Whether the number may be negative.
     """
 
     element: str
@@ -40,7 +40,7 @@ class LinkValue(NamedTuple):
 
 
 LINK_VALUES = {"mass": LinkValue("mass", "value", 0, "kg", "mass", False)}
-"""Numbers that ``LINK.NAME`` sets, by NAME."""
+"""Link values that ``LINK.NAME`` overrides, by NAME."""
 LINK_VALUES.update(
     (f"i{a}{b}", LinkValue("inertia", f"i{a}{b}", 0, "kg m^2", f"{kind} of inertia", a != b))
     for a, b, kind in (
@@ -57,13 +57,13 @@ LINK_VALUES.update(
     for place, axis in enumerate("xyz")
 )
 LINK_NAMES = "LINK.mass, LINK.ixx ... LINK.izz, LINK.com_x ... LINK.com_z"
-"""Names of `LINK_VALUES` in help texts."""
+"""Names of `LINK_VALUES` for help texts."""
 
 
 def split_xacro_arguments(
     parameters: Optional[Mapping[str, Any]], xacro_args: Optional[Mapping[str, object]]
 ) -> Tuple[Dict[str, object], Dict[str, Any]]:
-    """Split parameters into arguments of the xacro file and the other parameters.
+    """Split parameters into xacro arguments and other parameters.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def split_xacro_arguments(
 
 
 def check_names(model: Model, parameters: Iterable[str]) -> None:
-    """Raise `InputError` if a name in a parameter is ambiguous in a model."""
+    """Raise `InputError` if the name in a parameter is ambiguous in a model."""
     keys = [key for key in parameters if _is_special(key)]
     if not keys:
         return
@@ -103,12 +103,12 @@ def apply_link_values(model: Model, parameters: Mapping[str, str]) -> Tuple[Mode
     Returns
     -------
     tuple
-        Model with the new values, and the other parameters, which are tags of plugins.
+        Model with the new values, and the remaining parameters, which are plugin tags.
 
     Raises
     ------
     InputError
-        If the link does not have the value, the value is not valid, or the name is ambiguous.
+        If the link lacks the value, the value is invalid, or the name is ambiguous.
     """
     _check_link_names(model, parameters)
     if not any(_is_special(key) for key in parameters):
@@ -127,7 +127,7 @@ def apply_link_values(model: Model, parameters: Mapping[str, str]) -> Tuple[Mode
 
 
 def _check_link_names(model: Model, parameters: Iterable[str]) -> None:
-    """Raise `InputError` for an unknown value of a link, such as LINK.mas."""
+    """Raise `InputError` for an unknown link value, such as LINK.mas."""
     links = [link.name for link in model.links]
     for key in parameters:
         owner, _, name = key.rpartition(".")
@@ -149,13 +149,13 @@ def list_link_values(document: Document) -> Dict[str, str]:
 
 
 def _is_special(key: str) -> bool:
-    """Return whether a key can be something else than a tag of a plugin."""
+    """Return whether a key may be something other than a plugin tag."""
     owner, _, name = key.rpartition(".")
     return owner == XACRO or name in LINK_VALUES
 
 
 def _describe_names(document: Document) -> Dict[str, List[str]]:
-    """Return the kinds of things that have each name in a document."""
+    """Return the kinds of objects with each name in a document."""
     kinds: Dict[str, List[str]] = {XACRO: ["the arguments of xacro"]}
 
     def start(tag: str, attributes: Mapping[str, str]) -> None:
@@ -196,12 +196,12 @@ class _Attribute(NamedTuple):
     """Value of a link in the text of a document."""
 
     span: Tuple[int, int]
-    """Begin and end in bytes of the document."""
+    """Start and end of the value, bytes."""
     text: str
 
 
 def _find_attributes(text: bytes) -> Dict[str, _Attribute]:
-    """Find the values of links in a document, by LINK.NAME."""
+    """Find the link values in a document, by LINK.NAME."""
     found: Dict[str, _Attribute] = {}
     parser = expat.ParserCreate()
     path: List[str] = []
@@ -231,7 +231,7 @@ def _find_attributes(text: bytes) -> Dict[str, _Attribute]:
 
 
 def _add_origins(text: bytes, links: Optional[Container[str]] = None) -> bytes:
-    """Write the default origin of the ``<inertial>`` of links that have none.
+    """Add the default origin to each ``<inertial>`` without one.
 
     Parameters
     ----------

@@ -14,8 +14,8 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 def find_root() -> Path:
     """Return the folder that contains ``urdf/``, ``worlds/`` and ``config/``.
 
-    It is the package if pip installed it, ``share/quadcore`` of the same space if catkin did, and
-    the top of the repository in a checkout.
+    With pip, this is the package folder. With catkin, it is ``share/quadcore`` in the same space.
+    In a checkout, it is the root of the repository.
     """
     folders = (_PACKAGE, *_PACKAGE.parents)
     places = (place for folder in folders for place in (folder, folder / "share" / "quadcore"))
@@ -23,7 +23,7 @@ def find_root() -> Path:
 
 
 def list_shipped(folder: str) -> dict[str, Path]:
-    """Return the files of a built-in folder by name without suffixes, such as "quadrotor"."""
+    """Return the files in a built-in folder by name without suffixes, such as "quadrotor"."""
     return {path.name.split(".")[0]: path for path in sorted((find_root() / folder).glob("*.*"))}
 
 
@@ -35,5 +35,5 @@ def cmake_prefix() -> str:
     str
         Absolute path.
     """
-    folders = Path(_core.__file__).resolve().parents  # pip's package, or catkin's space
+    folders = Path(_core.__file__).resolve().parents  # package folder (pip) or space (catkin)
     return str(next(folder for folder in folders if (folder / "lib/cmake/quadcore").is_dir()))

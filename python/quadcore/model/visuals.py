@@ -19,10 +19,10 @@ _NO_ROTATION = np.zeros(3)
 
 
 def read_vehicle(model: Model) -> DrawnVehicle:
-    """Read what a model looks like.
+    """Read the visible shapes of a model.
 
     Shapes of links on fixed joints belong to the body that carries them, as for `Model.links`. A
-    body without a valid visual has its equivalent inertia box.
+    body without a valid visual is drawn as its equivalent inertia box.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def read_vehicle(model: Model) -> DrawnVehicle:
     Returns
     -------
     DrawnVehicle
-        Frame and rotors. Visuals that cannot be drawn are left out with a warning.
+        Frame and rotors. Visuals that cannot be drawn are skipped with a warning.
     """
     shapes = _read_shapes(model)
     axes = [_NO_ROTATION, *(joint.axis for joint in model.joints)]
@@ -44,7 +44,7 @@ def read_vehicle(model: Model) -> DrawnVehicle:
 
 
 def _read_shapes(model: Model) -> Dict[str, List[DrawnShape]]:
-    """Read the shapes of each body, by its name."""
+    """Read the shapes of each body by name."""
     document = model.document
     root = parse(document.name, document.text).documentElement
     assert root is not None
@@ -103,7 +103,7 @@ def _read_visual(
 
 
 def _read_origin(element: Any) -> np.ndarray:
-    """Return the pose of an element's <origin> as a homogeneous matrix, m."""
+    """Return the pose in the <origin> of an element as a homogeneous matrix, m."""
     pose = np.eye(4)
     origin = _get_child(element, "origin")
     if origin is not None:
@@ -115,7 +115,7 @@ def _read_origin(element: Any) -> np.ndarray:
 
 
 def _read_named_colour(material: Any) -> Optional[Tuple[str, Tuple[float, ...]]]:
-    """Return name and colour of a material, or None for one without a colour."""
+    """Return the name and colour of a material; None if it has no colour."""
     colour = _get_child(material, "color")
     if colour is None:
         return None
@@ -132,7 +132,7 @@ def _read_numbers(element: Any, attribute: str, count: int) -> Tuple[float, ...]
 
 
 def _make_inertia_box(corners: np.ndarray) -> DrawnShape:
-    """Make a box from its corners; corner i is on the far side along edge k if bit k is set."""
+    """Make a box from its corners; corner i is at the far end of edge k if bit k of i is set."""
     edges = [corners[1 << k] - corners[0] for k in range(3)]
     size = tuple(float(np.linalg.norm(edge)) for edge in edges)
     pose = np.eye(4)
@@ -143,7 +143,7 @@ def _make_inertia_box(corners: np.ndarray) -> DrawnShape:
 
 
 def _find_source(model: Model, element: Any) -> str:
-    """Return FILE:LINE of an element in the file that it was written in."""
+    """Return FILE:LINE of an element in its original file."""
     origin = find_origin(element)
     assert origin is not None
     lines = model.document.lines
@@ -154,7 +154,7 @@ def _find_source(model: Model, element: Any) -> str:
 
 
 def _list_children(element: Any, name: str = "") -> Iterator[Any]:
-    """Yield the child elements, or those of a name."""
+    """Yield all child elements, or only those with a name."""
     for node in element.childNodes:
         if node.nodeType == node.ELEMENT_NODE and name in ("", node.tagName):
             yield node

@@ -1,4 +1,4 @@
-"""Changes to the text of a world, which keep the lines of what stays."""
+"""Changes to the text of a world that keep the line numbers of unchanged parts."""
 
 from __future__ import annotations
 
@@ -6,26 +6,26 @@ from typing import Any, Collection, List, NamedTuple, Sequence, Tuple
 
 from .._core import Document
 
-_DEPTH = 2  # of children of <world> in <sdf>
+_DEPTH = 2  # nesting level of the children of <world> in <sdf>
 
 
 class Child(NamedTuple):
-    """Element directly in <world>."""
+    """Direct child element of <world>."""
 
     name: str
     begin: int
-    """Position of its first character in the text."""
+    """Index of its first character in the text."""
     end: int
-    """Position after its last character."""
+    """Index after its last character."""
 
 
 def find_children(text: str) -> Tuple[List[Child], int]:
-    """Return the elements directly in <world>, and the position where <world> ends.
+    """Return the direct children of <world>, and the index at which <world> ends.
 
     Parameters
     ----------
     text
-        World that has been read, so that it is well-formed.
+        World that has already been read, so its XML is well-formed.
     """
     from xml.parsers import expat
 
@@ -44,7 +44,7 @@ def find_children(text: str) -> Tuple[List[Child], int]:
         if element == "world" and len(open_elements) < _DEPTH:
             end = at
         elif len(open_elements) == _DEPTH and open_elements[-1][0] == "world":
-            # The index of an element without content is that of its only tag.
+            # For an element without content, the index is that of its only tag.
             children.append(Child(element, begin, encoded.index(b">", at) + 1))
 
     parser.StartElementHandler, parser.EndElementHandler = start, stop
@@ -59,16 +59,16 @@ def find_children(text: str) -> Tuple[List[Child], int]:
 def change_world_text(
     document: Document, removed: Collection[str], added: Sequence[Tuple[str, Tuple[str, int]]]
 ) -> Document:
-    """Return the document of a world without some elements and with others at its end.
+    """Remove some elements from a world, and add others at its end.
 
     Parameters
     ----------
     document
-        Document of a world that has been read.
+        Document of a world that has already been read.
     removed
-        Names of elements directly in <world>.
+        Names of direct children of <world> to remove.
     added
-        Elements of one line each, with the file and line that errors in them state.
+        Elements to add, each in one line, with the file and line for error messages about it.
     """
     text = document.text
     children, end = find_children(text)
@@ -80,7 +80,7 @@ def change_world_text(
     before, after = text[:end], text[end:]
     count = text.count("\n") + 1
     lines: List[Any] = document.lines or [(document.name, i + 1) for i in range(count)]
-    last = before.count("\n") + 1  # the line in which the world ends
+    last = before.count("\n") + 1  # line in which <world> ends
     whole = "\n".join([before, *(element for element, _ in added), after])
     places = [place for _, place in added]
     return Document(document.name, whole, [*lines[:last], *places, *lines[last - 1 :]])

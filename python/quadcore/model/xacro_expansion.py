@@ -1,7 +1,7 @@
-"""Expansion of xacro files that keeps the origin of every line.
+"""Expansion of xacro files with the source line of every element.
 
-xacro itself does not keep lines. During an expansion this module replaces the parser of xacro by
-one with elements that contain their line, for the result and for error messages.
+xacro itself does not keep line numbers. During an expansion, this module replaces the parser of
+xacro. The elements of the new parser contain their line, for the result and for error messages.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from . import resources, xml_origins, xml_source
 from .expansion_cache import Dependencies, ExpansionCache, read_content
 from .xacro_faults import explain_error
 
-_MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
+_MOST_ELEMENTS = 20000  # a few lines of macros can expand to billions of elements
 
 
 _Lines = List[Tuple[str, xml_source.Origin]]
@@ -44,7 +44,7 @@ _CACHE: ExpansionCache[_Expansion] = ExpansionCache()
 
 
 def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
-    """Expand a xacro file, or return the cached expansion if nothing changed.
+    """Expand a xacro file, or return the cached expansion if nothing has changed.
 
     Parameters
     ----------
@@ -61,12 +61,12 @@ def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
     Raises
     ------
     InputError
-        If the file or an included file is wrong, or an argument does not exist.
+        If the file or an included file is invalid, or an argument does not exist.
 
     Warns
     -----
     QuadcoreWarning
-        If xacro warns.
+        If xacro issues a warning.
     """
     expansion = _expand_cached(path, arguments)
     for name in arguments:
@@ -79,7 +79,7 @@ def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
 
 
 def list_arguments(path: str, given: Mapping[str, str]) -> Dict[str, str]:
-    """Return the value of each argument of a xacro file, given or default.
+    """Return the given or default value of each argument of a xacro file.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def _expand_file(path: str, arguments: Mapping[str, str], outside: Dependencies)
             document = xacro.process_file(path, mappings=table)
     except QuadcoreError:
         raise
-    except Exception as error:  # xacro has no common base class for what it raises
+    except Exception as error:  # the exceptions of xacro have no common base class
         frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
         place = _find_place(reversed(frames)) or path
         raise InputError(
@@ -113,14 +113,14 @@ def _expand_file(path: str, arguments: Mapping[str, str], outside: Dependencies)
 
 
 def _blame_argument(path: str, arguments: Mapping[str, str], what: str) -> str:
-    """Add the argument to an error if the file would expand without it."""
+    """Name the argument in an error if the file expands without it."""
     for name, value in arguments.items():
         table = _Arguments({other: text for other, text in arguments.items() if other != name})
         try:
             with _replace_hooks(table, Dependencies()), suppress_warnings():
                 xacro.process_file(path, mappings=table)
             default = table[name]
-        except Exception:  # it is not this one, or not it alone
+        except Exception:  # another argument, or several together, cause the error
             continue
         given = " ".join(value.split())
         return f"xacro argument '{name}' is '{given}' (default '{default}'): {what}"
@@ -128,7 +128,7 @@ def _blame_argument(path: str, arguments: Mapping[str, str], what: str) -> str:
 
 
 class _Arguments(Dict[str, str]):
-    """Argument table of xacro that records the names that are used."""
+    """Argument table for xacro that records the names in use."""
 
     def __init__(self, given: Mapping[str, str]) -> None:
         super().__init__(given)
@@ -152,7 +152,7 @@ def _replace_hooks(arguments: _Arguments, outside: Dependencies) -> Iterator[Non
         if filename is not None:
             outside.ask(read_content, filename)
         if filename is None or not Path(filename).exists():
-            return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
+            return old_parse(source, filename)  # raises what <xacro:include optional=""> expects
         if not Path(filename).is_file():
             raise xacro.XacroException(
                 f"{filename}: this is not a regular file. Include a xacro file."
@@ -183,7 +183,7 @@ def _replace_hooks(arguments: _Arguments, outside: Dependencies) -> Iterator[Non
             return outside.ask(_find_package, words[0])
         if command in ("env", "optenv") and words:
             outside.ask(os.environ.get, words[0])
-        elif command not in ("arg", "cwd", "dirname"):  # eval; anon, which is another each time
+        elif command not in ("arg", "cwd", "dirname"):  # eval, or anon, which changes each time
             outside.may_be_kept = False
         if command == "arg" and len(words) == 1 and words[0] not in arguments:
             raise xacro.XacroException(
@@ -196,13 +196,13 @@ def _replace_hooks(arguments: _Arguments, outside: Dependencies) -> Iterator[Non
         outside.ask(read_content, filename)
         try:
             return io.StringIO(read_text(Path(filename)))
-        except InputError as error:  # xacro expects what open raises: an include may be optional
+        except InputError as error:  # xacro expects the errors of open
             if isinstance(error.__cause__, OSError):
                 raise error.__cause__ from None
             raise
 
     def warning(message: str) -> None:
-        outside.may_be_kept = False  # a cached expansion would not warn again
+        outside.may_be_kept = False  # a cached expansion would not repeat the warning
         place = _find_place(frame for frame, _ in traceback.walk_stack(None))
         warn(f"{place}: {message}" if place else message)
 
@@ -227,7 +227,7 @@ def _replace_hooks(arguments: _Arguments, outside: Dependencies) -> Iterator[Non
 
 
 def _find_package(name: str) -> str:
-    if name == "quadcore":  # installed by pip, it is in no ROS workspace
+    if name == "quadcore":  # pip does not install it into a ROS workspace
         return str(resources.find_root())
     try:
         return str(rospkg.RosPack().get_path(name))
@@ -240,7 +240,7 @@ def _find_package(name: str) -> str:
 def _find_place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
     """Return the origin of the element that xacro is expanding, from the innermost frame."""
     for frame in frames:
-        for name in ("node", "elt", "tag"):  # what xacro calls it
+        for name in ("node", "elt", "tag"):  # names of the element in xacro
             found = xml_origins.find_origin(frame.f_locals.get(name))
             if found is not None:
                 return found

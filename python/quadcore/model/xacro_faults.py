@@ -35,7 +35,7 @@ def _explain_key_error(error: KeyError, suffix: str) -> str:
 
 
 def _list_keys(expression: str) -> List[str]:
-    """List the keys of an expression dict(name=...)[...]."""
+    """List the keys in an expression dict(name=...)[...]."""
     try:
         tree = ast.parse(expression, mode="eval")
     except SyntaxError:

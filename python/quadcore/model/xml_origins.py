@@ -27,7 +27,7 @@ def parse(file: str, text: str) -> minidom.Document:
 
 
 def find_origin(node: Any) -> Origin | None:
-    """Return the origin of a node, or of the nearest element around it from a file."""
+    """Return the origin of a node, or of its nearest ancestor that has one."""
     while isinstance(node, minidom.Node):
         found: Origin | None = node.getUserData(_KEY)
         if found is not None:
@@ -37,10 +37,10 @@ def find_origin(node: Any) -> Origin | None:
 
 
 def write(document: minidom.Document) -> list[tuple[str, Origin]]:
-    """Return the lines of a document with their origins; each has at most one start tag.
+    """Return the lines of a document with their origins; each line has at most one start tag.
 
-    Comments and white space around texts are omitted. Text between elements, which does not occur
-    in URDF and world files, precedes them.
+    Comments and surrounding white space are removed. Text between elements, which does not occur in
+    URDF and world files, is moved before them.
     """
     root = document.documentElement
     assert root is not None

@@ -9,7 +9,7 @@ from xml.parsers import expat
 from .._core import Document, InputError
 from ..support.input_files import read_text
 
-# The core's limits.
+# The limits of the core.
 LARGEST = Document.largest
 DEEPEST = Document.most_levels
 MOST_ATTRIBUTES = Document.most_attributes
@@ -26,15 +26,15 @@ class Origin(NamedTuple):
 
 
 def read(path: Path, largest: int = LARGEST) -> str:
-    """Read the text of an XML file; raises `InputError` if this fails or the file is too large."""
+    """Read the text of an XML file; raise `InputError` if it is unreadable or too large."""
     return read_text(path, largest)
 
 
 def check(file: str, text: str) -> None:
     """Raise `InputError` unless `text` is well-formed XML without a DOCTYPE, within the limits.
 
-    Entities of a DOCTYPE can expand without bound or include other files. Namespace prefixes need
-    no declaration, because world files use some without.
+    Entities of a DOCTYPE can expand without limit or include other files. Namespace prefixes need
+    no declaration, because some world files lack it.
     """
     parser = expat.ParserCreate()
     level = 0
