@@ -1,4 +1,4 @@
-"""Client of ``quadcore serve``. It and `protocol` need only the standard library."""
+"""Client of ``quadcore serve``; this module and `protocol` need only the standard library."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Row = Tuple[float, ...]
 
 
 class ServerError(Exception):
-    """Error of a request or of the flight.
+    """Error of a request or a flight.
 
     Attributes
     ----------
     failed : bool
-        Whether the flight has failed; only a reset continues.
+        Whether the flight has failed; then only a reset is possible.
     """
 
     def __init__(self, why: str, failed: bool) -> None:
@@ -26,7 +26,7 @@ class ServerError(Exception):
 
 
 class Client:
-    """Connection to a server; the flight starts again for each client.
+    """Connection to a server; each client starts a new flight.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Client:
     Attributes
     ----------
     dt : float
-        Length of a step, s.
+        Step of the simulation, s.
     rotors : int
         Number of values of a command.
     columns : list of str
@@ -63,7 +63,7 @@ class Client:
         self.columns: List[str] = protocol.decode_text(self._ask(Request.COLUMNS)).split(",")
 
     def step(self, speeds: Optional[Sequence[float]] = None, steps: int = 1) -> Row:
-        """Advance the flight; returns the last row.
+        """Advance the flight, and return the last row.
 
         Parameters
         ----------
@@ -80,11 +80,11 @@ class Client:
         return self._ask(Request.STEP, [steps, *(() if speeds is None else speeds)])
 
     def reset(self, seed: Optional[int] = None) -> Row:
-        """Start another flight, by default with the same seed, and return its first row."""
+        """Start a new flight, by default with the same seed, and return its first row."""
         return self._ask(Request.RESET, [] if seed is None else [seed])
 
     def close(self) -> None:
-        """End the flight and close the connection."""
+        """End the flight, and close the connection."""
         self._socket.close()
 
     def __enter__(self) -> Client:

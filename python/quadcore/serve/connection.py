@@ -1,4 +1,4 @@
-"""Connection to a client, with time limits, so that silent clients do not block others."""
+"""Connection to a client, with time limits so that silent clients do not block others."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ _GONE = select.POLLRDHUP | select.POLLHUP | select.POLLERR
 
 
 class Connection:
-    """Messages from and to a client.
+    """Receives messages from a client and sends replies.
 
     Parameters
     ----------
     client : socket
         Socket of the client.
     others : socket
-        Listening socket, where other clients wait.
+        Listening socket, at which other clients wait.
     timeout : float
-        Maximum silence, s: before the first message, within a message, while a client does not read
-        answers, and between messages while another client waits.
+        Maximum silence, s. It applies before the first message, within a message, and while a
+        client does not read replies. Between messages, it applies only while another client waits.
 
     Raises
     ------
@@ -38,7 +38,7 @@ class Connection:
             client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def receive(self) -> Tuple[int, Tuple[float, ...]]:
-        """Wait for a message; returns its kind and numbers, and raises as `protocol.read` does."""
+        """Wait for a message, and return kind and numbers; errors as in `protocol.read_message`."""
         self._wait()
         end = time.monotonic() + self._timeout
 
@@ -79,9 +79,9 @@ class Connection:
         raise ConnectionError(f"no message for {self._timeout:g} s")
 
     def _comes_first(self, poll: select.poll) -> bool:
-        """Keep waiting; returns whether the client sends something before another client waits."""
+        """Continue to wait; return whether the client sends data before another client connects."""
         others = self._others.fileno()
-        if others >= 0:  # else the server is closed
+        if others >= 0:  # otherwise the server is closed
             poll.register(others, select.POLLIN)
         while True:
             ready = dict(poll.poll())

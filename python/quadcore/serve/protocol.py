@@ -1,6 +1,6 @@
 """Protocol of the simulation server; docs/serve.md describes it.
 
-All numbers are float64, little-endian. A message consists of its kind, the count of the following
+All numbers are little-endian float64. A message consists of its kind, the count of the following
 numbers, and these numbers. The module needs only the standard library.
 """
 
@@ -19,12 +19,12 @@ _HEAD = struct.Struct("<2d")
 
 
 class Request(IntEnum):
-    """Kind of a request."""
+    """Kind of request from the client."""
 
     HELLO = 0
     """VERSION -> VERSION, dt (s), number of speeds in a command, number of columns in a row"""
     COLUMNS = 1
-    """nothing -> names of the columns of a row, separated by commas, as text"""
+    """nothing -> names of the columns of a row as text, separated by commas"""
     STEP = 2
     """number of steps, and a command (rad/s) or nothing to keep the previous one -> a row"""
     RESET = 3
@@ -36,9 +36,9 @@ class Reply(IntEnum):
 
     DONE = 0
     REFUSED = 1
-    """the request is invalid and changed nothing: reason as text"""
+    """The request is invalid and changed nothing; the reply contains the reason as text."""
     FAILED = 2
-    """the flight has failed after the previous row; only a reset continues: reason as text"""
+    """The flight failed after the previous row, and only a reset is possible; reason as text."""
 
 
 class ProtocolError(Exception):
@@ -51,27 +51,28 @@ def pack_message(kind: int, numbers: Sequence[float] = ()) -> bytes:
 
 
 def encode_text(text: str) -> List[int]:
-    """Encode a text: a number for each byte of UTF-8."""
+    """Encode a text as one number per UTF-8 byte."""
     return list(text.encode())
 
 
 def decode_text(numbers: Sequence[float]) -> str:
-    """Decode a text."""
+    """Decode a text from one number per UTF-8 byte."""
     return bytes(int(number) for number in numbers).decode(errors="replace")
 
 
 def read_message(receive: Callable[[int], bytes]) -> Tuple[int, Tuple[float, ...]]:
-    """Read a message; returns its kind and numbers.
+    """Read a message, and return its kind and numbers.
 
     Parameters
     ----------
     receive
-        Returns at most as many bytes as asked for, none at the end, like `socket.recv`.
+        Function that returns at most the given number of bytes, and none at the end, like
+        `socket.recv`.
 
     Raises
     ------
     EOFError
-        If there is no further message.
+        If there are no more messages.
     ProtocolError
         If the message is malformed.
     """
@@ -93,7 +94,7 @@ def read_message(receive: Callable[[int], bytes]) -> Tuple[int, Tuple[float, ...
 
 
 def _receive_exactly(count: int, receive: Callable[[int], bytes]) -> bytes:
-    """Receive a number of bytes, or fewer at the end."""
+    """Receive this number of bytes, or fewer at the end."""
     data = b""
     while len(data) < count:
         piece = receive(count - len(data))

@@ -1,4 +1,4 @@
-"""Flights of a client, advanced by requests."""
+"""Flights of a client, which its requests advance."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ from .. import _core
 from ..formats.rows import Recorder
 from ..simulation.simulation import Simulation
 
-_PIECE = 1000  # steps per piece of rows in memory
+_PIECE = 1000  # maximum number of rows in memory
 _MOST_STEPS = 1_000_000_000
 
 
 class ServedFlight:
-    """Successive flights of a client, each from the start of the simulation.
+    """Successive flights of a client; each starts from the initial state of the simulation.
 
     Parameters
     ----------
     simulation, topics, record, log_every
         As for `Server`.
     check_there
-        Called at intervals during many steps; raises if the client has disconnected.
+        Function called at intervals during long requests; it raises an error if the client has
+        disconnected.
     """
 
     def __init__(
@@ -43,19 +44,19 @@ class ServedFlight:
         self._begin(None)
 
     def step(self, numbers: Sequence[float]) -> List[float]:
-        """Advance the flight; returns the last row.
+        """Advance the flight, and return the last row.
 
         Parameters
         ----------
         numbers
-            Number of steps, and a command (rad/s) or nothing.
+            Number of steps, followed by a command (rad/s) or nothing.
 
         Raises
         ------
         InputError
-            If the numbers are invalid; nothing has changed.
+            If the numbers are invalid. In this case nothing changes.
         FlightError
-            If the flight fails or has failed, or its log cannot be written.
+            If the flight fails or has already failed, or its log cannot be written.
         """
         if not numbers:
             raise _core.InputError(
@@ -81,12 +82,12 @@ class ServedFlight:
         return self._row
 
     def reset(self, numbers: Sequence[float]) -> List[float]:
-        """Start another flight; returns its first row.
+        """Start a new flight, and return its first row.
 
         Parameters
         ----------
         numbers
-            A seed, or nothing to keep the previous one.
+            Seed, or nothing to keep the previous seed.
 
         Raises
         ------
@@ -105,7 +106,7 @@ class ServedFlight:
         return self._row
 
     def close(self) -> None:
-        """Close the log; raises `InputError` if a log is incomplete."""
+        """Close the log; raise `InputError` if a log is incomplete."""
         self._finish()
         if self._unwritten is not None:
             raise self._unwritten
@@ -146,7 +147,7 @@ class ServedFlight:
                 raise _core.FlightError(f"{error}. The flight has ended.") from error
 
     def _record_from_the_start(self) -> None:
-        """Open the log, unless it is open: a flight without steps writes no log."""
+        """Open the log unless it is open; a flight without steps writes no log."""
         if self._record is None or self._recorder is not None:
             return
         recorder = self._record()

@@ -1,4 +1,4 @@
-"""Server of flights of one simulation, for one client at a time."""
+"""Server for flights of one simulation, with one client at a time."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from .protocol import ProtocolError, Reply, Request
 from .served_flight import ServedFlight
 
 TIMEOUT = 60.0
-"""Default limit of the silence of a client, s."""
+"""Default time limit for a silent client, s."""
 
-_LONGEST = 1e6  # s
+_LONGEST = 1e6  # s; maximum time limit
 
 
 class Server:
-    """Server on a local socket; a vehicle runs in lockstep with its client.
+    """Server on a local socket; the simulation runs in lockstep with its client.
 
     Parameters
     ----------
     simulation : Simulation
-        Simulation; each client starts from its initial state.
+        Simulation to serve. Each client starts from its initial state.
     address : int or str
         Port of 127.0.0.1 (0: any free port), or path of a new Unix socket.
     topics : sequence of str
-        Topics with columns in each row after those of the state.
+        Topics with columns that follow those of the state in each row.
     record : callable, optional
-        Called at the start of each flight; returns a recorder of its rows.
+        Function called at the start of each flight; returns a recorder of its rows.
     log_every : int
         Steps between recorded rows.
     timeout : float
@@ -79,12 +79,12 @@ class Server:
             self.address = self._path
 
     def serve(self, tell: Callable[[str], None], clients: Optional[int] = None) -> None:
-        """Serve clients one after the other, until `close` or for a number of clients.
+        """Serve clients one after another, until `close` or for a number of clients.
 
         Parameters
         ----------
         tell
-            Called with a line about each disconnected client or incomplete log.
+            Function called with a line about each disconnected client or incomplete log.
         clients
             Number of clients (default: unlimited).
         """
@@ -104,9 +104,9 @@ class Server:
                     tell(f"client {served}: {error}")
 
     def close(self) -> None:
-        """Stop listening; may be called from any thread. The current client is still served."""
+        """Stop listening; any thread may call this. The current client is still served."""
         self._is_closed = True
-        with suppress(OSError):  # on some systems only connections can be shut down
+        with suppress(OSError):  # some systems can shut down only connected sockets
             self._socket.shutdown(socket.SHUT_RDWR)  # wakes a waiting accept
         self._socket.close()
         if self._path is not None:
@@ -170,7 +170,7 @@ def _pack_text(reply: Reply, text: str) -> bytes:
 
 
 def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
-    """Open a socket; returns it and its path, if any."""
+    """Open a listening socket; return it and its path (None for a port)."""
     listening = socket.socket(socket.AF_INET if isinstance(address, int) else socket.AF_UNIX)
     try:
         if isinstance(address, int):
@@ -191,7 +191,7 @@ def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
 
 
 def _remove_stale_socket(path: str) -> None:
-    """Remove the socket of a killed server."""
+    """Remove the socket file of a killed server."""
     if not (os.path.exists(path) and stat.S_ISSOCK(os.stat(path).st_mode)):
         return
     with socket.socket(socket.AF_UNIX) as probe:
