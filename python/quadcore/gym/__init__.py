@@ -1,8 +1,8 @@
 """Gymnasium environments: fly to a goal and stay there.
 
-`Env` steps a `Simulation`, `VectorEnv` a `BatchSimulation`. Importing this module registers both as
-``quadcore/Hover-v0``. Observations and rewards are selected by name from `OBSERVATIONS` and
-`REWARDS`.
+`Env` steps a `Simulation`, and `VectorEnv` steps a `BatchSimulation`. Importing this module
+registers both as ``quadcore/Hover-v0``. `OBSERVATIONS` and `REWARDS` contain the observations and
+rewards that can be selected by name.
 """
 
 from .._core import InputError

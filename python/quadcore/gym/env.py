@@ -1,4 +1,4 @@
-"""Environment of one vehicle."""
+"""Environment with one vehicle."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ class Env(gymnasium.Env):
     """Fly from the start to a goal near it, and stay there.
 
     An episode starts at `spawn`, with vehicle and rotors at rest. It is terminated if the vehicle
-    is too far from the goal or the flight fails, and truncated at the end of its duration.
+    is too far from the goal or the flight fails. It is truncated at the end of its duration.
 
     Parameters
     ----------
     model : str, path or Model
         As for `Simulation`.
     engine : str
-        Engine.
+        Physics engine.
     **options
-        The members of `task.Rules`: observation, reward, rate, duration, spread, reach, authority.
-        Others as for `Simulation`.
+        Fields of `task.Rules`: observation, reward, rate, duration, spread, reach and authority.
+        All other options are those of `Simulation`.
 
     Attributes
     ----------
     simulation : Simulation
         Simulation of the vehicle.
     task : Task
-        Observations, rewards and commands.
+        Definition of observations, rewards and commands.
 
     Raises
     ------
@@ -67,14 +67,14 @@ class Env(gymnasium.Env):
 
     @property
     def goal(self) -> np.ndarray:
-        """Goal of the vehicle, world axes, (3,), m."""
+        """Goal of the vehicle, world axes, m; shape (3,)."""
         goal: np.ndarray = self._episodes.goals[0]
         return goal
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
     ) -> Tuple[np.ndarray, Dict[str, Any]]:
-        """Start an episode; `seed` sets the generator of goals and noise."""
+        """Start an episode; `seed` sets the random generator of goals and noise."""
         check_no_options(options)
         super().reset(seed=seed)
         self._episodes.set_generators([self.np_random])
@@ -86,8 +86,8 @@ class Env(gymnasium.Env):
     def step(self, action: np.ndarray) -> Step:
         """Apply an action for 1 / rate seconds.
 
-        If the flight fails, `info` contains the reason as ``failure``, and the observation is that
-        of the previous state.
+        If the flight fails, ``info["failure"]`` contains the reason, and the observation is that of
+        the previous state.
         """
         if not self._flies:
             raise InputError("the episode has ended, or none has started. Reset the environment.")
@@ -111,6 +111,6 @@ class Env(gymnasium.Env):
 
 
 def check_no_options(options: Optional[Dict[str, Any]]) -> None:
-    """Raise `InputError` if `reset` receives options."""
+    """Raise `InputError` if options are passed to `reset`."""
     if options:
         raise InputError(f"reset: unknown option {', '.join(map(repr, options))}. Remove it.")

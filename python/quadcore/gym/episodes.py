@@ -1,4 +1,4 @@
-"""Episodes of n vehicles: goals, last actions, and ends."""
+"""Episodes of n vehicles: goals, last actions and ends."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .task import Task
 
 
 class StepResult(NamedTuple):
-    """Result of an action, a row or a number for each vehicle."""
+    """Result of a step, with a row or a number for each vehicle."""
 
     observation: np.ndarray
     reward: np.ndarray
@@ -23,9 +23,9 @@ class StepResult(NamedTuple):
 
 
 class Episodes:
-    """Episodes of vehicles that start at `homes`, (n, 3), m.
+    """Episodes of vehicles that start at `homes` (n, 3), m.
 
-    Each vehicle has its own random generator, so that vehicles are independent.
+    Each vehicle has its own random generator, so the vehicles are independent.
     """
 
     def __init__(self, task: Task, homes: np.ndarray) -> None:
@@ -38,19 +38,19 @@ class Episodes:
 
     @property
     def goals(self) -> np.ndarray:
-        """Goals of the vehicles, world axes, (n, 3), m."""
+        """Goals of the vehicles, world axes, m; shape (n, 3)."""
         return self._goals.copy()
 
     def set_seeds(self, seed: int) -> None:
-        """Set the generator of vehicle i from seed + i."""
+        """Seed the generator of vehicle i with seed + i."""
         self._generators = [seeding.np_random(seed + i)[0] for i in range(len(self._homes))]
 
     def set_generators(self, generators: Sequence[np.random.Generator]) -> None:
-        """Set the generators."""
+        """Set the random generators of the vehicles."""
         self._generators = list(generators)
 
     def begin(self, mask: np.ndarray) -> np.ndarray:
-        """Start the episodes of some vehicles; returns the seeds of their noise, (n,)."""
+        """Start the episodes of some vehicles, and return the seeds of their noise (n,)."""
         seeds = np.zeros(len(mask), np.uint64)
         for i in np.flatnonzero(mask):
             draw = self._generators[i]
@@ -68,7 +68,7 @@ class Episodes:
     def finish_step(
         self, state: BatchState, actions: np.ndarray, failed: np.ndarray, begun: np.ndarray
     ) -> StepResult:
-        """Return the results of actions; vehicles in `begun` have just started and ignore them."""
+        """Return the results of actions; new episodes (`begun`) ignore their actions."""
         actions = np.where(begun[:, None], 0.0, actions)
         self._count += ~begun
         away = np.linalg.norm(state.position - self._goals, axis=1)

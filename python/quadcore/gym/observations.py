@@ -10,14 +10,14 @@ from .step_data import StepData
 
 
 class Observation(NamedTuple):
-    """Observation: an array of numbers for each vehicle."""
+    """Observation: a row of numbers for each vehicle."""
 
     meaning: str
-    """With axes and units."""
+    """Description with axes and units."""
     compute: Callable[[StepData], np.ndarray]
-    """Rows of numbers, (n, count)."""
+    """Returns the observations, shape (n, width)."""
     bound: float = float(np.finfo(np.float32).max)
-    """That none exceeds; finite, as Gymnasium wants it."""
+    """Maximum magnitude; finite, because Gymnasium requires it."""
 
 
 OBSERVATIONS: Dict[str, Observation] = {

@@ -10,11 +10,11 @@ from .step_data import StepData
 
 
 class Reward(NamedTuple):
-    """Reward term of each vehicle and action."""
+    """Reward term for each vehicle."""
 
     meaning: str
     compute: Callable[[StepData], np.ndarray]
-    """Returns the term of each vehicle, (n,)."""
+    """Returns the term for each vehicle, shape (n,)."""
 
 
 def _norm(rows: np.ndarray) -> np.ndarray:

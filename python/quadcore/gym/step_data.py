@@ -8,12 +8,12 @@ import numpy as np
 
 
 class StepData(NamedTuple):
-    """States of n vehicles after an action, a row for each.
+    """States of n vehicles after an action; each row belongs to one vehicle.
 
     Attributes
     ----------
     error : ndarray (n, 3)
-        From the goal to the frame origin, world axes, m.
+        Vectors from the goals to the frame origins, world axes, m.
     R_WF : ndarray (n, 3, 3)
         Rotation matrices from frame axes to world axes.
     linear_velocity : ndarray (n, 3)
@@ -23,9 +23,9 @@ class StepData(NamedTuple):
     rotor_velocity : ndarray (n, rotors)
         Joint velocities, rad/s.
     action, action_before : ndarray (n, rotors)
-        Current and previous action; zero at the start.
+        Current and previous actions; zero at the start.
     lost : ndarray (n,) of bool
-        Whether the episode is terminated.
+        Whether each episode is terminated.
     """
 
     error: np.ndarray

@@ -1,4 +1,4 @@
-"""Task of an episode: action rate, meaning of actions, observations and rewards."""
+"""Task of an episode: action rate, scaling of actions, observations and rewards."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from .step_data import StepData
 
 
 class Rules(NamedTuple):
-    """Rules of episodes; both environments take these arguments by name.
+    """Rules of episodes; both environments accept these fields as keyword arguments.
 
     Attributes
     ----------
     observation : sequence of str
-        Names from `OBSERVATIONS`, which are concatenated.
+        Names in `OBSERVATIONS`; the observations are concatenated.
     reward : mapping of str to float
-        Weights of the terms from `REWARDS`, which are summed.
+        Weights of terms in `REWARDS`; the weighted terms are summed.
     rate : float
-        Actions per second; each lasts a whole number of steps.
+        Actions per simulated second, 1/s. Each action lasts a whole number of steps.
     duration : float
         Duration after which an episode is truncated, s.
     spread : float
-        Half the edge of the cube around the start from which the goal is drawn, m.
+        Half the edge length of the cube around the start in which the goal is sampled, m.
     reach : float
-        Distance from the goal at which an episode is terminated, m.
+        Distance from the goal beyond which an episode is terminated, m.
     authority : float
-        Action a commands (1 + authority a) times the hover speed of a rotor; in (0, 1].
+        Scale of actions in (0, 1]: an action a commands (1 + authority a) times the hover speed.
     """
 
     observation: Sequence[str] = ("error", "rotation", "velocity", "rates", "action")
@@ -50,22 +50,22 @@ class Rules(NamedTuple):
 
 
 class Task:
-    """Rules for a vehicle.
+    """Application of the rules to a vehicle.
 
     Parameters
     ----------
     vehicle : Simulation
-        Vehicle; actions are relative to its hover speed.
+        Vehicle. Actions are relative to its hover speed.
     rules : Rules
 
     Attributes
     ----------
     hover : ndarray (rotors,)
-        Signed hover commands in still air, rad/s.
+        Signed commands for hover in still air, rad/s.
     steps : int
-        Simulation steps per action.
+        Number of simulation steps per action.
     actions : int
-        Maximum number of actions of an episode.
+        Maximum number of actions in an episode.
     observation_space, action_space : Box
 
     Raises
@@ -94,12 +94,12 @@ class Task:
         self.action_space = spaces.Box(-1, 1, (rotors,), np.float32)
 
     def commands(self, actions: np.ndarray) -> np.ndarray:
-        """Return the commands of actions (n, rotors), rad/s.
+        """Return the commands (n, rotors) for actions (n, rotors), rad/s.
 
         Raises
         ------
         InputError
-            If an action has the wrong shape or exceeds [-1, 1]; actions are not clipped.
+            If an action has the wrong shape or exceeds [-1, 1]. Actions are not clipped.
         """
         if actions.ndim != 2 or actions.shape[1] != len(self.hover):
             raise InputError(
@@ -114,12 +114,12 @@ class Task:
         return commands
 
     def observe(self, step: StepData) -> np.ndarray:
-        """Return the observations, (n, width)."""
+        """Return the observations, shape (n, width)."""
         parts = [OBSERVATIONS[name].compute(step) for name in self.rules.observation]
         return np.concatenate(parts, axis=1).astype(np.float32)
 
     def reward(self, step: StepData) -> np.ndarray:
-        """Return the rewards, (n,)."""
+        """Return the rewards, shape (n,)."""
         total = np.zeros(len(step.error))
         for name, weight in self.rules.reward.items():
             total += weight * REWARDS[name].compute(step)

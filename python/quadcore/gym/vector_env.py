@@ -1,4 +1,4 @@
-"""Environment of many vehicles."""
+"""Environment with many vehicles."""
 
 from __future__ import annotations
 
@@ -36,18 +36,18 @@ class VectorEnv(_VectorEnv):
     model : str, path or Model
         As for `Simulation`.
     engine : str
-        Engine.
+        Physics engine.
     **options
-        The members of `task.Rules`, as for `Env`. Others as for `BatchSimulation`, so that
-        parameters and starts may differ between vehicles. Actions are relative to the hover speed
-        of the model without the parameters that differ.
+        Fields of `task.Rules`, as for `Env`. All other options are those of `BatchSimulation`, so
+        parameters and initial poses may differ between vehicles. Actions are relative to the hover
+        speed of the model without the parameters that differ.
 
     Attributes
     ----------
     batch : BatchSimulation
         Simulation of the vehicles.
     task : Task
-        Observations, rewards and commands.
+        Definition of observations, rewards and commands.
 
     Raises
     ------
@@ -66,7 +66,7 @@ class VectorEnv(_VectorEnv):
     ) -> None:
         rules, others = split_options(options)
         self.batch = BatchSimulation(model, num_envs, engine, **others)
-        with suppress_warnings():  # the batch has given the warnings
+        with suppress_warnings():  # the batch has already issued these warnings
             self.task = Task(Simulation(model, engine, **_pick_common(others)), rules)
         self.num_envs = self.batch.n
         self.single_observation_space = self.task.observation_space
@@ -80,17 +80,17 @@ class VectorEnv(_VectorEnv):
 
     @property
     def goals(self) -> np.ndarray:
-        """Goals of the vehicles, world axes, (num_envs, 3), m."""
+        """Goals of the vehicles, world axes, m; shape (num_envs, 3)."""
         return self._episodes.goals
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
     ) -> Tuple[np.ndarray, Dict[str, Any]]:
-        """Start an episode of each vehicle; `seed` + i sets the generator of vehicle i."""
+        """Start an episode of each vehicle; vehicle i gets the random generator of `seed` + i."""
         check_no_options(options)
         super().reset(seed=seed)
         if seed is not None or not self._has_begun:
-            # Without a seed, a random one.
+            # Without a seed, use a random one.
             self._episodes.set_seeds(int(self.np_random.integers(2**31)) if seed is None else seed)
         self._has_begun = True
         everyone = np.ones(self.num_envs, bool)
@@ -99,10 +99,10 @@ class VectorEnv(_VectorEnv):
         return self._episodes.observe(self._state()), {}
 
     def step(self, actions: np.ndarray) -> Step:
-        """Apply an action of each vehicle for 1 / rate seconds.
+        """Apply one action per vehicle for 1 / rate seconds.
 
-        If flights fail, `infos` contains the reasons as ``failure`` and a mask of these flights as
-        ``_failure``. Their observations are those of the previous state.
+        If flights fail, ``infos["failure"]`` contains the reasons, and ``infos["_failure"]`` marks
+        these flights. Their observations are those of the previous states.
         """
         if not self._has_begun:
             raise InputError("no episode has started. Reset the environment.")
@@ -134,7 +134,7 @@ class VectorEnv(_VectorEnv):
 
 
 def _pick_common(options: Mapping[str, Any]) -> Dict[str, Any]:
-    """Return the arguments of a `Simulation` that all vehicles of a batch share."""
+    """Return the `Simulation` arguments that all vehicles of a batch share."""
     alike = {k: v for k, v in options.items() if k in ("world", "dt", "xacro_args", "ignore")}
     parameters = (options.get("parameters") or {}).items()
     return {**alike, "parameters": {k: v for k, v in parameters if np.ndim(v) == 0}}
