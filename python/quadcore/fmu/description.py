@@ -1,4 +1,4 @@
-"""File modelDescription.xml of FMI 2.0."""
+"""The file modelDescription.xml of FMI 2.0."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def make_description(
     model
         Name of the vehicle.
     identifier
-        Name of the library without suffix.
+        Name of the library without its suffix.
     guid
         GUID that the library checks.
     tool

@@ -40,9 +40,9 @@ from .variables import Variable, list_start_variables, list_variables
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-_VERSION = 2  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
-_LARGEST = 10**8  # bytes of a file that a tag names; same limit as in the core
-_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # equal FMUs are bit-identical
+_VERSION = 2  # version of flight.yaml, which cpp/fmu/flight_file.cpp reads
+_LARGEST = 10**8  # maximum size of a file that a tag names, bytes; same limit as in the core
+_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # fixed date, so that equal FMUs are bit-identical
 
 
 class _Options(TypedDict, total=False):
@@ -65,18 +65,18 @@ def export_fmu(
     model: Union[str, Path, _core.Model] = "quadrotor",
     **options: Unpack[_Options],
 ) -> None:
-    """Write a vehicle in its world as an FMU for co-simulation, FMI 2.0.
+    """Write a vehicle in its world as an FMU for co-simulation (FMI 2.0).
 
-    The FMU contains everything that it needs on Linux, and no absolute path.
+    The FMU contains everything that it needs on Linux, and no absolute paths.
 
     Parameters
     ----------
     path
-        File name with the suffix ``.fmu``.
+        Path with the suffix ``.fmu``.
     model
         As for `Simulation`.
     **options
-        As for `Simulation`, and ``scenario`` and ``wind`` as for `FlightPlan.of`.
+        As for `Simulation`; ``scenario`` and ``wind`` as for `FlightPlan.of`.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def export_fmu(
 
 
 def write_fmu(path: Path, plan: FlightPlan) -> None:
-    """Write the vehicle of a plan as an FMU. It raises the errors of `export_fmu`."""
+    """Write the vehicle of a plan as an FMU; the errors are those of `export_fmu`."""
     simulation = plan.simulation()
     if plan.engine not in dict(_core.engines()):
         raise InputError(f"an FMU cannot contain the engine {plan.engine}. Choose another engine.")

@@ -12,14 +12,14 @@ from .. import _core
 from .._core import InputError
 from ..simulation.simulation import Simulation
 
-# The loader reuses a loaded library with the same name. Unique names prevent that an FMU uses the
+# The loader reuses a loaded library with the same name. Unique names prevent an FMU from using the
 # core of another FMU or of this process.
 _PT_LOAD, _PT_DYNAMIC, _DT_NEEDED, _DT_STRTAB = 1, 2, 1, 5
 _EVERYWHERE = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s))\.so.*")
 
 
 class Libraries:
-    """Libraries of an FMU in addition to those of C and C++: interface, core and plugins.
+    """Libraries of an FMU, except for those of C and C++: interface, core and plugins.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Libraries:
                 for path in loaded:
                     if f"{path.name}.".startswith(
                         f"{name}."
-                    ):  # symbolic links point to longer names
+                    ):  # a symbolic link points to a longer name
                         self._linked[name] = path.read_bytes()
                         to_see.append(self._linked[name])
 
@@ -70,9 +70,9 @@ class Libraries:
         return digest.digest()
 
     def make_files(self, identifier: str, guid: str) -> Dict[str, bytes]:
-        """Return the libraries by their place in the FMU, with names derived from the GUID."""
+        """Return the libraries by their path in the FMU, with names derived from the GUID."""
         names = {}
-        for name in self._linked:  # same length, as names are replaced in place
+        for name in self._linked:  # same length, because names are replaced in place
             digest = hashlib.sha256(f"{guid}{name}".encode()).hexdigest()
             names[name] = f"{digest[: len(name) - 3]}.so"
 

@@ -11,19 +11,19 @@ from ..simulation.simulation import Simulation
 _WRENCH = (("fx", "N"), ("fy", "N"), ("fz", "N"), ("tx", "N.m"), ("ty", "N.m"), ("tz", "N.m"))
 _SPAWN = ("x", "y", "z", "roll", "pitch", "yaw")
 _STATE_UNITS = ("s", "m", "m", "m", "", "", "", "", *["m/s"] * 3, *["rad/s"] * 3)
-_LARGEST_SEED = 2**31 - 1  # maximum of an Integer
+_LARGEST_SEED = 2**31 - 1  # maximum value of an Integer
 
 
 class Variable(NamedTuple):
-    """A variable of an FMU."""
+    """Variable of an FMU."""
 
     name: str
     kind: str
     """Kind, as in cpp/fmu/flight_file.hpp."""
     key: str
-    """Topic or PLUGIN.TAG."""
+    """Name of the topic, or PLUGIN.TAG."""
     place: int
-    """Index in a row or among the fields."""
+    """Index in the row, or among the fields of the topic."""
     type: str
     """Real, Integer, Boolean or String."""
     causality: str
@@ -43,7 +43,7 @@ def list_variables(simulation: Simulation) -> List[Variable]:
     """
     of_topics = [*_list_outputs(simulation), *_list_inputs(simulation)]
     taken = {variable.name for variable in of_topics}
-    parameters = [  # plugin and topic may share a name, tag and field too
+    parameters = [  # a topic with its field can have the same name as a plugin with its tag
         tag._replace(name=f"{tag.name}_tag") if tag.name in taken else tag
         for tag in _list_parameters(simulation)
     ]
@@ -85,7 +85,7 @@ def _list_inputs(simulation: Simulation) -> Iterator[Variable]:
     for topic in simulation.topics.values():
         if topic.writer is None:
             is_command = topic.name == simulation.command_topic
-            start = simulation.topic(topic.name)  # initial value
+            start = simulation.topic(topic.name)  # contains the initial values
             for i, field in enumerate(topic.fields):
                 name = field if is_command else f"{topic.name}.{field}"
                 yield Variable(
@@ -101,7 +101,7 @@ def _list_parameters(simulation: Simulation) -> Iterator[Variable]:
             key = f"{plugin.name}.{tag.name}"
             is_number = tag.kind == "number" and tag.text != ""
             kind = "file" if tag.kind == "file" else "parameter"
-            types = {"flag": "Boolean", "number": "Real"}  # absent values are empty texts
+            types = {"flag": "Boolean", "number": "Real"}  # missing values are empty texts
             yield Variable(
                 key, kind, key, 0, types.get(tag.kind if tag.text else "", "String"), "parameter",
                 "tunable" if is_number else "fixed", tag.text, tag.unit if is_number else "",
@@ -110,7 +110,7 @@ def _list_parameters(simulation: Simulation) -> Iterator[Variable]:
 
 
 def list_start_variables(spawn: Sequence[float], seed: int) -> Iterator[Variable]:
-    """Yield the parameters of spawn and seed."""
+    """Yield the parameters for the initial pose and the seed."""
     for i, (name, value) in enumerate(zip(_SPAWN, spawn)):
         yield Variable(
             f"spawn.{name}", "spawn", "", i, "Real", "parameter", "fixed", repr(value),
