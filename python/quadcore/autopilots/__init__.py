@@ -1,4 +1,4 @@
-"""Bridges to autopilots: programs outside quadcore that fly the vehicle in lockstep.
+"""Bridges to autopilots: external programs that control the vehicle in lockstep.
 
 A stack file (YAML) describes an autopilot; `read_autopilot` makes a controller from it. `Autopilot`
 is the base class of bridges to other stacks.

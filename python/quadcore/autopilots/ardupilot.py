@@ -1,11 +1,11 @@
 """Bridge to ArduPilot's SITL program by its JSON interface.
 
-It follows the source of ArduPilot, commit 0394cbc; it has never met the program.
+The bridge follows the source of ArduPilot, commit 0394cbc. It has not been tested with the program.
 
 - ``libraries/SITL/SIM_JSON.h:47``: packet of the servos; ``:114``: keys of the state
 - ``libraries/SITL/SIM_JSON.cpp:101`` sends the servos; ``:129`` reads the state. It searches for
-  keys without a JSON parser, so that a bracket follows each colon at once
-- ``libraries/AP_RCProtocol/AP_RCProtocol_UDP.cpp``, commit 04c3451: 16 channels of a radio
+  keys without a JSON parser, so a bracket must directly follow each colon
+- ``libraries/AP_RCProtocol/AP_RCProtocol_UDP.cpp``, commit 04c3451: the 16 radio channels
 
 Body axes are forward, right, down; world axes are north, east, down.
 """
@@ -34,10 +34,10 @@ from .sticks import StickPilot, Sticks
 _SERVOS = struct.Struct("<HHI16H")
 _MAGIC = 18458
 _RADIO = struct.Struct("<16H")
-_LOW, _SPAN = 1000, 1000  # us; pulses of outputs from 0 to 1
-_IDLE = 0.05  # half of MOT_SPIN_ARM; larger outputs show an armed autopilot
+_LOW, _SPAN = 1000, 1000  # us; pulse widths of the outputs 0 to 1
+_IDLE = 0.05  # half of MOT_SPIN_ARM; a larger output means that the autopilot is armed
 _ARM = 3.0  # s before the flight
-_MAX_ANGLE, _MAX_YAW_RATE = math.radians(45), math.radians(200)  # of full sticks
+_MAX_ANGLE, _MAX_YAW_RATE = math.radians(45), math.radians(200)  # at full stick deflection
 _PARAMETERS = "quadcore.parm"
 
 ARGUMENTS = (
@@ -49,26 +49,26 @@ ARGUMENTS = (
 DEFAULTS = {
     "FRAME_CLASS": "1",
     "FRAME_TYPE": "1",
-    "FLTMODE_CH": "0",  # stays in the initial mode, which levels itself
+    "FLTMODE_CH": "0",  # keeps the initial mode, which is self-levelling
     "RC5_OPTION": "153",  # arming switch
     "ANGLE_MAX": "4500",
 }
-"""Parameters that the bridge relies on."""
+"""Parameters on which the bridge relies."""
 
 
 class ArduPilot(ProgramAutopilot):
-    """Controller that flies an ArduPilot SITL program (``arducopter``) with the sticks of a radio.
+    """Controller that runs an ArduPilot SITL program (``arducopter``) with the sticks of a radio.
 
     Parameters
     ----------
     program : str
-        ArduPilot's program.
+        Path of ArduPilot's program.
     arguments : sequence of str, default `ARGUMENTS`
-        Arguments of the program. ``{motors}`` and ``{radio}`` stand for free ports.
+        Arguments of the program. ``{motors}`` and ``{radio}`` are replaced by free ports.
     parameters : mapping of str to str, default {}
-        Parameters of ArduPilot by name, which are given as its defaults and not read back.
+        Parameters of ArduPilot by name. They are passed as defaults and are not read back.
     hold : float, default 30
-        Duration of the phase before the flight, s, in which the estimator settles.
+        Duration of the phase before the flight, s, during which the estimator settles.
     motor_curve, rotors, imu, where
         As for `Autopilot`.
     """
@@ -119,7 +119,7 @@ class ArduPilot(ProgramAutopilot):
         self._flight_link = self.record_link(self._exchange, about)
 
     def tick(self, readings: Readings, sticks: Sticks) -> Sequence[float]:
-        """Send the channels of the radio and the state, and wait for the servos."""
+        """Send the radio channels and the state, and wait for the servos."""
         link = self._exchange if readings.time < 0 else self._flight_link
         assert link is not None
 
@@ -142,20 +142,21 @@ class ArduPilot(ProgramAutopilot):
         return outputs[: len(self.layout)]
 
     def pilot(self, t: float, state: Any, reference: Any) -> Sticks:
-        """Arm before the flight, then follow the reference."""
+        """Arm before the flight, and follow the reference in flight."""
         if t < 0:
             return Sticks(is_armed=t >= -_ARM)
         return fly_reference(self._pilot, state, reference)
 
 
 def convert_readings(readings: Readings) -> Dict[str, List[float]]:
-    """Return angular velocity, specific force, position, velocity and attitude of ArduPilot.
+    """Return the readings in the axes of ArduPilot.
 
     Returns
     -------
     dict of str to list of float
-        ``gyro`` (rad/s) and ``accel_body`` (m/s^2) in axes forward, right, down; ``position`` (m)
-        and ``velocity`` (m/s) in axes north, east, down; ``quaternion`` w, x, y, z between these.
+        ``gyro`` (rad/s) and ``accel_body`` (m/s^2) are in forward, right, down axes. ``position``
+        (m) and ``velocity`` (m/s) are in north, east, down axes. ``quaternion`` (w, x, y, z)
+        transforms from the former axes to the latter.
     """
     return {
         "gyro": turn_body_vector(readings.angular_velocity),
@@ -167,7 +168,7 @@ def convert_readings(readings: Readings) -> Dict[str, List[float]]:
 
 
 def pack_state(time: float, readings: Readings) -> bytes:
-    """Pack a time (s) and the readings in a line of JSON, as ArduPilot's parser needs it."""
+    """Pack a time (s) and the readings as a line of JSON that ArduPilot's parser accepts."""
     values = convert_readings(readings)
     imu = {name: values.pop(name) for name in ("gyro", "accel_body")}
     state = {"timestamp": time, "imu": imu, **values, "no_time_sync": 1}
@@ -175,14 +176,14 @@ def pack_state(time: float, readings: Readings) -> bytes:
 
 
 def pack_radio(sticks: Sticks) -> bytes:
-    """Pack the channels roll, pitch, throttle, yaw, arming switch; the others are ignored."""
+    """Pack the channels roll, pitch, throttle, yaw and arming switch; the rest are ignored."""
     levels = (sticks.roll, sticks.pitch, 2 * sticks.throttle - 1, sticks.yaw)
     channels = [1500 + round(500 * level) for level in levels]
     return _RADIO.pack(*channels, 2000 if sticks.is_armed else 1000, *[0] * 11)
 
 
 def read_servos(packet: bytes) -> Tuple[Optional[Sequence[float]], int, str]:
-    """Return the outputs and the count of a packet, or None and what is wrong with it."""
+    """Return the outputs and the count of a packet, or None and the error."""
     if len(packet) != _SERVOS.size:
         problem = f"a packet of servos has {len(packet)} bytes instead of {_SERVOS.size}"
         return None, 0, problem

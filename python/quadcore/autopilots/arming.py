@@ -1,4 +1,4 @@
-"""Watch over the arming of an autopilot in flight."""
+"""Monitor for the arming of an autopilot in flight."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ _DISARMED = 0.1  # s without output after which an armed autopilot counts as dis
 
 
 class ArmingWatch:
-    """Ends a flight if its autopilot does not arm, or disarms.
+    """Ends a flight if the autopilot does not arm, or disarms in flight.
 
     Parameters
     ----------
     fail : callable
-        Makes the error of a time (s) and a reason.
+        Function that makes an error from a time (s) and a reason.
     quote : callable
-        Quotes the last messages of the autopilot.
+        Function that quotes the last messages of the autopilot.
     """
 
     def __init__(self, fail: Callable[[float, str], FlightError], quote: Callable[[], str]) -> None:
@@ -25,7 +25,7 @@ class ArmingWatch:
         self._off_since: Optional[float] = None
 
     def check(self, t: float, is_wanted: bool, is_armed: bool) -> None:
-        """Raise `FlightError` if the autopilot is to be armed in flight and is not."""
+        """Raise `FlightError` if the autopilot should be armed in flight but is not."""
         if t < 0 or not is_wanted or is_armed:
             self._off_since = None
             return

@@ -19,56 +19,57 @@ from .session import Link, Recorder, Session
 _Autopilot = TypeVar("_Autopilot", bound="Autopilot")
 
 MAX_HOLD = 600.0
-"""Longest phase before the flight, s."""
+"""Maximum duration of the phase before the flight, s."""
 
 
 class Autopilot:
-    """Controller that asks a program outside quadcore, in lockstep.
+    """Controller that calls an external program in lockstep.
 
     A bridge to another stack defines `layout`, `start`, `tick`, `pilot` and `close`. A flight calls
-    them in this order: `start`; `pilot` and `tick` in every tick of the phase before the flight and
-    of the flight; `close`. In a ``with`` statement, `close` is also called at its end.
+    `start` first. Then it calls `pilot` and `tick` in every tick, both in the phase before the
+    flight and in flight. It calls `close` last. In a ``with`` statement, `close` is also called at
+    the end of the block.
 
-    In the phase before the flight, the vehicle is held still in its initial pose, and t counts
-    from ``-hold`` to 0. Autopilots need this time to start, calibrate and arm. It is not part of
-    the log, and the simulation does not move.
+    In the phase before the flight, the vehicle is held in its initial pose, and t counts from
+    ``-hold`` to 0. Autopilots need this time to start, calibrate and arm. The log does not contain
+    this phase, and the simulation does not advance.
 
     Parameters
     ----------
     motor_curve : {"speed", "thrust"} or sequence of pairs, default "speed"
-        Rotor speed by output; see `MotorCurve`.
+        Rotor speed as a function of the output; see `MotorCurve`.
     rotors : sequence of str, default ()
-        Joints of the rotors in the order of the outputs. Default: by position and spin.
+        Joints of the rotors in the order of the outputs. Default: assigned by position and spin.
     imu : str, default ""
-        Topic of the IMU. Default: ideal readings of the state.
+        Topic of the IMU. Default: ideal readings from the state.
     hold : float, default 0
-        Duration of the phase before the flight, s, up to `MAX_HOLD`.
+        Duration of the phase before the flight, s, at most `MAX_HOLD`.
     where : mapping of str to str, default {}
-        Places of the values in a stack file, ``FILE:LINE:`` and a space, by name, for messages.
+        Locations of the values in a stack file, for messages: ``FILE:LINE: `` by name.
 
     Attributes
     ----------
     rate : float
         Ticks per simulated second, 1/s.
     fixed_rate : bool
-        True, because the program counts ticks as time.
+        True, because the program measures time by counting ticks.
     channels : sequence of Channel
-        Outputs and their rotors, from the first reset on.
+        Outputs with their rotors, available after the first reset.
     curve : MotorCurve
-        Motor curve, from the first reset on.
+        Motor curve, available after the first reset.
     period : float
-        Time between ticks, s, from the first reset on.
+        Time between ticks, s, available after the first reset.
     record : path, optional
-        File into which the session is recorded; it appears at the end of the flight.
+        File for the recorded session, which is written at the end of the flight.
     session : Session, optional
         Recorded session that answers instead of the program.
     words : sequence of str
         Command line of the flight, which a recorded session contains.
     log : dict of str to float
-        Outputs, and what else the bridge knows at each tick. The log of a flight has these columns
-        under the topic ``controller``.
+        Outputs and other values of the bridge at each tick. The log of a flight contains them under
+        the topic ``controller``.
     summary : str
-        Description of the answers of the last flight, with their durations.
+        Description of the answers in the last flight, with their durations.
     program_summary : str
         Name and SHA-256 of the program of the last flight.
     """
@@ -117,12 +118,12 @@ class Autopilot:
         self.close()
 
     def start(self, vehicle: Vehicle) -> None:
-        """Start the program and connect to it.
+        """Start the program, and connect to it.
 
         Parameters
         ----------
         vehicle : Vehicle
-            Vehicle that the autopilot is to fly.
+            Vehicle to control.
         """
         raise NotImplementedError
 
@@ -139,7 +140,7 @@ class Autopilot:
         raise NotImplementedError
 
     def pilot(self, t: float, state: Any, reference: Any) -> Any:
-        """Return what the pilot gives to the autopilot, such as the positions of the sticks.
+        """Return the input of the pilot to the autopilot, such as the stick positions.
 
         Parameters
         ----------
@@ -153,22 +154,23 @@ class Autopilot:
         raise NotImplementedError
 
     def ask(self, tick: Callable[[], object]) -> Any:
-        """Connect for questions, as `check_autopilot` needs; see `bench.Questions`.
+        """Open a connection for questions, which `check_autopilot` needs; see `bench.Questions`.
 
         Parameters
         ----------
         tick : callable
-            Lets the autopilot compute one period, for stacks that answer from their main loop.
+            Function that lets the autopilot compute one period, for stacks that answer in their
+            main loop.
         """
         raise InputError("This autopilot answers no questions. Check it in a flight.")
 
     @property
     def pilot_every(self) -> int:
-        """Ticks from one call of `pilot` to the next, from the first reset on."""
+        """Number of ticks between calls of `pilot`, available after the first reset."""
         return max(1, round(1 / (self.pilot_rate * self.period)))
 
     def record_link(self, link: Link, about: Mapping[str, Any]) -> Link:
-        """Return the link for the flight, which records the session if that is wanted.
+        """Return the link for the flight; it records the session if `record` is set.
 
         Parameters
         ----------
@@ -184,7 +186,7 @@ class Autopilot:
         return self._recorder
 
     def close(self) -> None:
-        """Write the session; a subclass also ends the program.
+        """Write the recorded session; a subclass also ends the program.
 
         quadcore calls this method after every flight.
         """
@@ -193,7 +195,7 @@ class Autopilot:
             self._recorder = None
 
     def reset(self, simulation: Any) -> None:
-        """Start the autopilot, and hold the vehicle until it is ready."""
+        """Start the autopilot, and hold the vehicle until the autopilot is ready."""
         simulation = unwrap(simulation)
         self.prepare(simulation)
         self.start(simulation.vehicle)
@@ -208,12 +210,12 @@ class Autopilot:
         self._elapsed, self._began = 0.0, time.perf_counter()
 
     def prepare(self, simulation: Any) -> None:
-        """Map the channels to the rotors of a simulation, and read its motor curve.
+        """Assign the channels to the rotors of a simulation, and read the motor curve.
 
         Raises
         ------
         InputError
-            If the vehicle does not fit the autopilot.
+            If the vehicle does not match the autopilot.
         """
         by_command = sorted(
             (rotor for rotor in simulation.rotors if rotor.command_index is not None),
@@ -246,13 +248,13 @@ class Autopilot:
         return np.array(outputs)
 
     def describe_speed(self) -> str:
-        """Return the speed of the flight, without the phase before it, as a share of real time."""
+        """Return the speed of the flight relative to real time, without the phase before it."""
         if self._elapsed == 0:
             return "no flight"
         return f"{self._elapsed / (time.perf_counter() - self._began):.1f} times real time"
 
     def fail(self, t: float, reason: str) -> FlightError:
-        """Make the error that ends a flight at a time (s) for a reason."""
+        """Make the error that ends a flight at a time (s) with a reason."""
         when = f"at t = {t:f} s" if t >= 0 else f"{-t:.3f} s before the flight"
         error = FlightError(f"the flight failed {when}: {reason}")
         error.time = max(t, 0.0)

@@ -1,4 +1,4 @@
-"""Bench on which a vehicle is held and turned while an autopilot runs."""
+"""Bench that holds and turns a vehicle while an autopilot runs."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ _LEVEL, _ORIGIN = np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(3)
 
 
 class Questions(Protocol):
-    """Connection by which an autopilot answers questions."""
+    """Connection over which an autopilot answers questions."""
 
     def read_attitude(self) -> Tuple[float, float, float]:
-        """Return the estimated roll, pitch and yaw, rad; axes forward, left, up."""
+        """Return the estimated roll, pitch and yaw, rad, for forward, left, up axes."""
 
     def set_motors(self, outputs: Sequence[float]) -> None:
-        """Turn the motors of a disarmed autopilot at some outputs, from 0 to 1."""
+        """Run the motors of a disarmed autopilot at these outputs, from 0 to 1."""
 
     def close(self) -> None:
         """Close the connection."""
 
 
 class Bench:
-    """Holds and turns a vehicle; its rotors do not move it.
+    """Bench that holds and turns a vehicle; its rotors do not move it.
 
     Parameters
     ----------
     autopilot : Autopilot
-        Autopilot that has started.
+        Autopilot that has already started.
     gravity : float
         Gravitational acceleration, m/s^2.
     """
@@ -49,11 +49,11 @@ class Bench:
 
     @property
     def time(self) -> float:
-        """Time, s; counts from ``-hold``."""
+        """Time, s; it counts from ``-hold``."""
         return self._time
 
     def hold(self, duration: float) -> None:
-        """Hold the vehicle still for a duration, s."""
+        """Hold the vehicle still for a duration (s)."""
         for _ in range(math.ceil(duration / self._autopilot.period)):
             self.tick()
 
@@ -63,7 +63,7 @@ class Bench:
         Parameters
         ----------
         axis : int
-            0 forward, 1 left, 2 up.
+            Body axis: 0 forward, 1 left, 2 up.
         angle : float
             Angle, rad.
         duration : float
@@ -84,7 +84,7 @@ class Bench:
         readings = read_held(
             self._time, self._orientation, self._gravity, _ORIGIN, np.asarray(angular_velocity)
         )
-        # A radio that falls silent disarms an autopilot.
+        # A silent radio would disarm the autopilot.
         if self._ticks % self._autopilot.pilot_every == 0:
             self._sent = Sticks(*self.sticks)
         self._ticks += 1

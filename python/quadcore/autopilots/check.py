@@ -1,4 +1,4 @@
-"""Check of an autopilot on a bench: signs of its sensors, order and spin of its motors."""
+"""Check of an autopilot on a bench: signs of sensors, order and spin of motors."""
 
 from __future__ import annotations
 
@@ -13,36 +13,36 @@ from .rotor_map import Channel, describe_quadrant, find_spin
 
 _AXES = ("forward axis (roll)", "left axis (pitch)", "up axis (yaw)")
 _TILT, _TURN = math.radians(20), 0.1  # rad, s
-_NUDGE, _NUDGED = math.radians(6), 0.06  # rad, s; of an armed vehicle
+_NUDGE, _NUDGED = math.radians(6), 0.06  # rad, s; for an armed vehicle
 _SETTLE = 2.0  # s; until the accelerometer determines the attitude
 _TEST_OUTPUT = 0.2
-_SEEN = 0.3  # share of an angle; smaller changes count as none
+_SEEN = 0.3  # fraction of an angle; smaller changes count as zero
 
 
 def check_autopilot(autopilot: Autopilot, simulation: Any) -> List[str]:
-    """Check an autopilot, and list what is wrong.
+    """Check an autopilot, and list the problems.
 
-    The vehicle is held on a bench. It is tilted quickly, and the autopilot is asked for its
-    attitude, which then comes from its gyroscopes. After some seconds at rest it comes from its
-    accelerometers. Then each motor is turned. Finally the autopilot is armed, and the vehicle is
-    nudged about each axis: the motors must oppose the rotation.
+    The vehicle is held on a bench. It is tilted quickly, and the autopilot reports its attitude,
+    which at this time depends on the gyroscopes. After some seconds at rest, the attitude depends
+    on the accelerometers. Then each motor runs alone. Finally the autopilot is armed and the
+    vehicle is nudged about each axis; the motors must oppose the rotation.
 
     Parameters
     ----------
     autopilot : Autopilot
-        Autopilot that can be asked, with a method `ask`.
+        Autopilot that supports the method `ask`.
     simulation : Simulation
         Simulation of the vehicle, which does not move.
 
     Returns
     -------
     list of str
-        One sentence for each problem.
+        Problems, one sentence each.
 
     Raises
     ------
     QuadcoreError
-        If the vehicle does not fit, or the autopilot does not start, answer or arm.
+        If the vehicle does not match, or the autopilot does not start, answer or arm.
     """
     try:
         autopilot.prepare(simulation)
@@ -63,7 +63,7 @@ def check_autopilot(autopilot: Autopilot, simulation: Any) -> List[str]:
 
 
 def _check_sensors(bench: Bench, questions: Questions) -> Dict[Any, str]:
-    """Return problems of the sensors; those of a gyroscope by the number of its axis."""
+    """Return the problems of the sensors; the key of a gyroscope problem is the axis number."""
     level = questions.read_attitude()
     if max(map(abs, level[:2])) > _TILT / 2:
         return _describe_overturned(level)
@@ -81,7 +81,7 @@ def _check_sensors(bench: Bench, questions: Questions) -> Dict[Any, str]:
             if max(map(abs, attitude[:2])) > math.pi / 2:
                 return _describe_overturned(attitude)
             settled = _wrap(attitude[axis] - before) / _TILT
-            if settled < _SEEN:  # a roll moves gravity to the left axis, a pitch to the forward one
+            if settled < _SEEN:  # roll moves gravity to the left axis, pitch to the forward axis
                 what = "has the wrong sign" if settled < -_SEEN else "is not read"
                 found[f"acceleration {axis}"] = (
                     f"The accelerometer along the {('left', 'forward')[axis]} axis {what}."
@@ -108,9 +108,9 @@ def _check_each_motor(bench: Bench, questions: Questions, channels: Sequence[Cha
 
 
 def _check_responses(bench: Bench, autopilot: Autopilot, known: Any) -> List[str]:
-    """Return problems of the order and the spin of the motors.
+    """Return the problems with the order and the spin of the motors.
 
-    `known` contains the axes with a gyroscope that is known to be wrong.
+    `known` contains the axes with gyroscopes that are known to be wrong.
     """
     bench.sticks = bench.sticks._replace(is_armed=True)
     bench.hold(1.0)
@@ -173,10 +173,10 @@ def _describe_swaps(
 
 
 def _find_response(rotor: Any) -> Tuple[int, int, int]:
-    """Return the sign by which a rotor must change to oppose a positive rotation about each axis.
+    """Return the sign of the change that opposes a positive rotation about each axis.
 
-    Thrust at (x, y) has the moment (y, -x) about the forward and the left axis, and the reaction
-    torque is against the spin.
+    Thrust at (x, y) has the moment (y, -x) about the forward and left axes. The reaction torque is
+    opposite to the spin.
     """
     x, y = rotor.position[:2]
     return int(-np.sign(y)), int(np.sign(x)), find_spin(rotor)

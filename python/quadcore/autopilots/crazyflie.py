@@ -1,4 +1,4 @@
-"""Bridge to the Crazyflie's firmware, which runs in this process through its Python bindings."""
+"""Bridge to the Crazyflie firmware, which runs in this process through its Python bindings."""
 
 from __future__ import annotations
 
@@ -22,50 +22,50 @@ from .rotor_map import Place
 from .session import Link, describe_session
 
 _MODULE = "cffirmware"
-_FULL = 65535.0  # UINT16_MAX, a motor at full thrust
+_FULL = 65535.0  # UINT16_MAX; value of a motor at full thrust
 _G = 9.80665  # m/s^2
 _QUESTION = struct.Struct("<30f")
 _ANSWER = struct.Struct("<4H")
 
 
 class Setpoint(NamedTuple):
-    """Set-point of the firmware's commander, world axes."""
+    """Set-point of the firmware's commander in world axes."""
 
     position: Sequence[float]
-    """m"""
+    """Position, m."""
     velocity: Sequence[float]
-    """m/s"""
+    """Velocity, m/s."""
     acceleration: Sequence[float]
-    """m/s^2"""
+    """Acceleration, m/s^2."""
     yaw: float
-    """rad"""
+    """Yaw, rad."""
     yaw_rate: float
-    """rad/s"""
+    """Yaw rate, rad/s."""
 
 
 class Crazyflie(Autopilot):
     """Controller that calls Mellinger's controller of the Crazyflie firmware.
 
-    The firmware receives the true state in place of the estimate of its Kalman filter. Its own
-    power distribution and its limits give the thrusts of the motors.
+    The firmware receives the true state instead of the estimate of its Kalman filter. Its power
+    distribution and its limits determine the thrusts of the motors.
 
     Parameters
     ----------
     program : str
-        The firmware's bindings, ``build/cffirmware.py`` after ``make bindings_python``.
+        Path of the firmware's bindings, ``build/cffirmware.py`` after ``make bindings_python``.
     parameters : mapping of str to str, default {}
-        Fields of the firmware's ``controllerMellinger_t``, such as ``kp_xy``. Default: the
-        firmware's gains, and mass and massThrust of the vehicle.
+        Fields of the firmware's ``controllerMellinger_t``, such as ``kp_xy``. Default: the gains of
+        the firmware, and the mass and massThrust of the vehicle.
     motor_curve, default "thrust"
-        As for `Autopilot`. The firmware compensates the voltage of the battery, so that its outputs
-        are proportional to thrust.
+        As for `Autopilot`. The firmware compensates the battery voltage, so its outputs are
+        proportional to thrust.
     rotors, imu, hold, where
         As for `Autopilot`.
     """
 
     # src/modules/src/power_distribution_quadrotor.c, powerDistributionForceTorque
     layout = (Place(1, -1, 1), Place(-1, -1, -1), Place(-1, 1, 1), Place(1, 1, -1))
-    rate = 1000.0  # RATE_MAIN_LOOP; the firmware divides it for its loops
+    rate = 1000.0  # RATE_MAIN_LOOP; the firmware divides this rate for its loops
     pilot_rate = 1000.0
 
     def __init__(
@@ -101,7 +101,7 @@ class Crazyflie(Autopilot):
             self.session.rewind()
 
     def tick(self, readings: Readings, sticks: Setpoint) -> Sequence[float]:
-        """Give the firmware the state and the set-point, and return the thrusts of its motors."""
+        """Pass state and set-point to the firmware, and return the thrusts of the motors."""
         assert self._link is not None
         question = _QUESTION.pack(
             *convert_readings(readings),
@@ -136,9 +136,9 @@ class Crazyflie(Autopilot):
 
 
 def convert_readings(readings: Readings) -> List[float]:
-    """Return the state and the sensors as the firmware has them.
+    """Convert the state and the readings to the format of the firmware.
 
-    Its axes are those of `Readings`. Pitch is negated in the attitude, but not in the quaternion
+    The axes are those of `Readings`. Pitch is negated in the attitude but not in the quaternion
     (``state_t``, src/modules/interface/stabilizer_types.h).
 
     Returns
@@ -159,12 +159,12 @@ def convert_readings(readings: Readings) -> List[float]:
 
 
 class Firmware:
-    """Mellinger's controller of the firmware; questions and answers are bytes, as for a program.
+    """Mellinger's controller of the firmware; requests and answers are bytes, as for a program.
 
     Parameters
     ----------
     bindings : module
-        The firmware's bindings.
+        Bindings of the firmware.
     parameters : mapping of str to float
         Fields of ``controllerMellinger_t``.
 
@@ -195,10 +195,10 @@ class Firmware:
         self._step = 0
 
     def send(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> None:
-        """Do nothing: the firmware reads no packets without an answer."""
+        """Do nothing, because the firmware reads no packets without an answer."""
 
     def ask(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> bytes:
-        """Run the controller and the power distribution once, and return the motors' ratios."""
+        """Run controller and power distribution once, and return the ratios of the motors."""
         numbers = iter(_QUESTION.unpack(packet))
         state, sensors, setpoint = self._state, self._sensors, self._setpoint
         for vector, names in (
@@ -228,12 +228,12 @@ class Firmware:
 
 @functools.lru_cache(maxsize=None)
 def load_bindings(path: Path) -> Any:
-    """Load the firmware's bindings from a file.
+    """Load the bindings of the firmware from a file.
 
     Raises
     ------
     InputError
-        If they cannot be loaded, or others have been loaded before.
+        If the bindings cannot be loaded, or other bindings were loaded before.
     """
     file = printable_name(path)
     spec = importlib.util.spec_from_file_location(_MODULE, path)
@@ -255,5 +255,5 @@ def load_bindings(path: Path) -> Any:
 
 
 def _find_library(module: Any) -> Path:
-    """Return the compiled part of the bindings, or the file of a module that has none."""
+    """Return the compiled part of the bindings, or the file of a module without one."""
     return Path(getattr(module, f"_{_MODULE}", module).__file__)

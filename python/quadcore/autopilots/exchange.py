@@ -16,33 +16,33 @@ from .waiting import Waiting, describe_durations
 
 HOST = "127.0.0.1"
 
-_AGAIN = 0.25  # s; without an answer for so long, the question is asked again
-_SETTLE = 0.02  # s; answers to a repeated question that come later are discarded
-_FIRST_PORT, _PORTS = 16384, 16384  # among which free ports are sought
-_asked = itertools.count()  # calls of find_free_port
+_AGAIN = 0.25  # s; time without an answer after which a request is repeated
+_SETTLE = 0.02  # s; later answers to a repeated request are discarded
+_FIRST_PORT, _PORTS = 16384, 16384  # range in which free ports are searched
+_asked = itertools.count()  # number of calls of find_free_port
 
 
 class Exchange:
-    """UDP socket that asks and waits for the answer, as long as the other program lives.
+    """UDP socket that sends requests and waits for answers while the other program runs.
 
     Parameters
     ----------
     program : Program
         Program that answers.
     port : int
-        Port to which the program sends its answers; 0: any free port.
+        Port to which the program sends its answers. 0: any free port.
 
     Attributes
     ----------
     durations : list of float
         Time until each answer, s.
     repeated : int
-        Number of questions that were asked again.
+        Number of repeated requests.
 
     Raises
     ------
     InputError
-        If the port is taken.
+        If the port is in use.
     """
 
     def __init__(self, program: Program, port: int) -> None:
@@ -65,20 +65,20 @@ class Exchange:
         return int(self._socket.getsockname()[1])
 
     def send(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> None:
-        """Send a packet that is not answered; arguments as for `ask`."""
+        """Send a packet that has no answer; the arguments are those of `ask`."""
         self._socket.sendto(packet, (HOST, port))
 
     def ask(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> bytes:
-        """Send a packet and return the answer.
+        """Send a packet, and return the answer.
 
         Parameters
         ----------
         packet
-            Question; asked again if there is no answer.
+            Request, which is repeated if there is no answer.
         port
             Port of the program.
         fail
-            Makes the error if the program ends.
+            Function that makes the error if the program ends.
         """
         began = asked = time.perf_counter()
         repeated, waiting = False, Waiting(self._program, fail)
@@ -97,7 +97,7 @@ class Exchange:
         return answer
 
     def wait_for_sender(self, fail: Callable[[str], Exception]) -> int:
-        """Wait for a first packet of the program, and return the port from which it was sent."""
+        """Wait for the first packet of the program, and return its source port."""
         waiting = Waiting(self._program, fail)
         while not self._poll.poll(_AGAIN * 1000):
             waiting.look()
@@ -118,7 +118,7 @@ class Exchange:
 
 
 def check_free(kind: int, port: int) -> None:
-    """Raise `InputError` if another program listens on a port of this machine.
+    """Raise `InputError` if another program uses a port on this machine.
 
     Parameters
     ----------
@@ -138,10 +138,10 @@ def check_free(kind: int, port: int) -> None:
 
 
 def find_free_port(kind: int) -> int:
-    """Return a port of this machine that is free now.
+    """Return a port on this machine that is currently free.
 
-    The system takes the ports of its own choice from 32768 on. This one is below, so that no
-    connection gets it before the autopilot opens it. Each process begins at another port.
+    The system assigns ports from 32768 on. This port is lower, so no connection takes it before the
+    autopilot opens it. Each process starts the search at another port.
     """
     for _ in range(_PORTS):
         port = _FIRST_PORT + (8 * os.getpid() + next(_asked)) % _PORTS
@@ -152,7 +152,7 @@ def find_free_port(kind: int) -> int:
 
 
 def describe_taken(kind: str, port: int, error: OSError) -> InputError:
-    """Make the error of a port that is taken."""
+    """Make the error for a port that is in use."""
     return InputError(
         f"{kind} port {port}: {error.strerror or error}. End the other autopilot or simulator, or "
         "run one flight at a time (--jobs 1)."

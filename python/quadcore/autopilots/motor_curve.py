@@ -1,4 +1,4 @@
-"""Motor curve: rotor speed as a function of an autopilot's output."""
+"""Motor curve: rotor speed as a function of the autopilot's output."""
 
 from __future__ import annotations
 
@@ -10,26 +10,27 @@ from .._core import InputError
 from ..support.arguments import shorten
 
 KINDS = ("speed", "thrust")
-"""Curves by name."""
+"""Names of the built-in curves."""
 
 CurveLike = Union[str, Sequence[Tuple[float, float]]]
 
 
 class MotorCurve:
-    """Rotor speeds of outputs from 0 to 1.
+    """Rotor speeds as a function of outputs from 0 to 1.
 
     Parameters
     ----------
     curve : {"speed", "thrust"} or sequence of pairs
-        "speed": the speed is proportional to the output; "thrust": the thrust is, so that the speed
-        grows with the square root. Pairs of output and rotor speed (rad/s) are joined by lines.
+        "speed": the speed is proportional to the output. "thrust": the thrust is proportional to
+        the output, so the speed grows with its square root. Pairs of output and rotor speed
+        (rad/s): linear interpolation.
     max_speeds : ndarray (n,)
-        Speed of each rotor at full output, rad/s; pairs do not use it.
+        Speed of each rotor at full output, rad/s; not used for pairs.
 
     Raises
     ------
     InputError
-        If the curve is not valid, or needs a maximum speed that the motors do not have.
+        If the curve is invalid, or requires a maximum speed that the motors do not have.
     """
 
     def __init__(self, curve: CurveLike, max_speeds: np.ndarray) -> None:
@@ -49,23 +50,23 @@ class MotorCurve:
         return np.asarray(self._max_speeds * _limit(outputs) ** self._exponent)
 
     def find_outputs(self, speeds: np.ndarray) -> np.ndarray:
-        """Return the outputs at which n motors turn at some speeds (rad/s); shape (n,)."""
+        """Return the outputs at which n motors turn at these speeds (rad/s); shape (n,)."""
         if self._table is not None:
             return np.asarray(np.interp(speeds, self._table[1], self._table[0]))
         return np.asarray(_limit(speeds / self._max_speeds) ** (1 / self._exponent))
 
 
 def _limit(outputs: np.ndarray) -> np.ndarray:
-    return np.asarray(np.minimum(np.maximum(outputs, 0), 1))  # a tenth of the time of np.clip
+    return np.asarray(np.minimum(np.maximum(outputs, 0), 1))  # ten times faster than np.clip
 
 
 def read_curve(curve: object) -> Optional[np.ndarray]:
-    """Return outputs and speeds of a curve, shape (2, rows), or None for one of `KINDS`.
+    """Return the outputs and speeds of a curve, shape (2, rows); None for one of `KINDS`.
 
     Raises
     ------
     InputError
-        If it is neither.
+        If the curve is neither.
     """
     if isinstance(curve, str):
         if curve not in KINDS:

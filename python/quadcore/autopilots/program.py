@@ -1,4 +1,4 @@
-"""Process of an autopilot, which ends with the flight whatever happens to quadcore."""
+"""Process of an autopilot; it ends with the flight, even if quadcore crashes."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from ..support.output_files import printable_name
 _LINES = 5
 """Number of last messages that an error quotes."""
 
-_PATIENCE = 5.0  # s; time for a killed process to end
-_LONGEST = 60.0  # s; time for a program that writes parameters
+_PATIENCE = 5.0  # s; time limit for a killed process to end
+_LONGEST = 60.0  # s; time limit for a program that writes parameters
 
-# Reads the group of the running process. At the end of quadcore, however it comes, it kills the
-# group and removes the folder.
+# Reads the group of the running process. When quadcore ends for any reason, it kills the group and
+# removes the folder.
 _WATCH = (
     'while read -r group; do last=$group; done; [ -z "$last" ] || kill -s KILL -- "-$last"; '
     'rm -rf -- "$1"'
@@ -30,7 +30,7 @@ _WATCH = (
 
 
 class Program:
-    """Program with a working folder of its own.
+    """Program with its own working folder.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Program:
         )
 
     def run(self, command: Sequence[str], environment: Mapping[str, str]) -> str:
-        """Run a command in the folder to its end, and return its output.
+        """Run a command in the folder until it ends, and return its output.
 
         Raises
         ------
@@ -91,14 +91,14 @@ class Program:
         environment
             Variables to add to the environment.
         passed
-            File descriptors to pass on.
+            File descriptors that the program inherits.
 
         Raises
         ------
         InputError
-            If it cannot be started.
+            If the program cannot be started.
         """
-        # Programs write whole lines to a terminal, but blocks to a pipe.
+        # Programs write complete lines to a terminal, but blocks to a pipe.
         self._terminal, output = os.openpty()
         os.set_blocking(self._terminal, False)
         try:
@@ -125,7 +125,7 @@ class Program:
         return f"Its last messages: {' | '.join(self._messages)}"
 
     def read_messages(self) -> None:
-        """Read what the program has printed, which would stop if the pipe were full."""
+        """Read the output of the program, which would block if the buffer were full."""
         while select.select([self._terminal], [], [], 0)[0]:
             try:
                 read = os.read(self._terminal, 65536)

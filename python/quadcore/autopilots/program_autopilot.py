@@ -1,4 +1,4 @@
-"""Autopilots that are programs of their own, which answer over a network."""
+"""Autopilots that are separate programs and answer over a network."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .sticks import StickPilot, Sticks
 
 
 class ProgramAutopilot(Autopilot):
-    """Controller that starts a program for each flight and ends it with the flight.
+    """Controller that starts a program for each flight, and ends it with the flight.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Readings of the sensors that an autopilot receives."""
+"""Sensor readings for an autopilot."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..support.rotation import to_matrix
 
 
 class Readings(NamedTuple):
-    """Readings of one tick; body axes are forward, left, up.
+    """Readings at one tick; body axes are forward, left, up.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Readings(NamedTuple):
     angular_velocity : ndarray (3,)
         Angular velocity, body axes, rad/s.
     specific_force : ndarray (3,)
-        Acceleration less gravity, body axes, m/s^2; about (0, 0, 9.8) at rest.
+        Acceleration minus gravity, body axes, m/s^2; about (0, 0, 9.8) at rest.
     """
 
     time: float
@@ -44,7 +44,7 @@ def read_held(
     position: np.ndarray,
     angular_velocity: np.ndarray,
 ) -> Readings:
-    """Return the readings of a vehicle that is held in a place, and turned there or not.
+    """Return the readings of a vehicle that is held at a position, and optionally turned.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class Sensors:
         return self._gravity
 
     def read(self, time: float) -> Readings:
-        """Return the readings of the present state."""
+        """Return the readings for the current state."""
         state = self._simulation.state
         new = Readings(
             time,

@@ -1,4 +1,4 @@
-"""Map from the channels of an autopilot to the rotors of a vehicle, by position and spin."""
+"""Assignment of an autopilot's channels to the rotors of a vehicle, by position and spin."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from .._core import InputError
 from ..support.parameters import suggest
 
-_ON_AXIS = 0.2  # share of the arm; a rotor this close to an axis is in no quadrant
+_ON_AXIS = 0.2  # fraction of the arm; a rotor closer to an axis is in no quadrant
 _SPINS = {1: "counter-clockwise", -1: "clockwise"}
 
 
 class Place(NamedTuple):
-    """Place of a motor in the layout of an autopilot, seen from above."""
+    """Position of a motor in the layout of an autopilot, seen from above."""
 
     front: int
     """1 in front of the centre, -1 behind it."""
@@ -28,12 +28,12 @@ class Place(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """Output of an autopilot and the rotor that it drives."""
+    """Output of an autopilot, and the rotor that it drives."""
 
     number: int
-    """Number of the output, from 1."""
+    """Number of the output, starting at 1."""
     place: Place
-    """Place where the autopilot has this motor."""
+    """Position of this motor in the layout of the autopilot."""
     rotor: Any
     """Rotor that the output drives."""
 
@@ -42,12 +42,12 @@ class Channel(NamedTuple):
 
 
 def describe_quadrant(front: float, left: float) -> str:
-    """Return the words for the quadrant of a place."""
+    """Return the name of the quadrant of a position."""
     return f"{'front' if front > 0 else 'rear'} {'left' if left > 0 else 'right'}"
 
 
 def find_spin(rotor: Any) -> int:
-    """Return the direction of a rotor seen from above: 1 counter-clockwise, -1 clockwise."""
+    """Return the spin of a rotor seen from above: 1 counter-clockwise, -1 clockwise."""
     return int(np.sign(rotor.spin * rotor.axis[2]))
 
 
@@ -83,19 +83,19 @@ def map_channels(
     Parameters
     ----------
     layout
-        Places of the motors, in the order of the outputs.
+        Positions of the motors in the order of the outputs.
     rotors
         Rotors of the vehicle.
     names
-        Joints of the rotors in the order of the outputs, which override their places and spins; or
-        empty.
+        Joints of the rotors in the order of the outputs, which override positions and spins. Empty:
+        no override.
     where
-        ``FILE:LINE: `` of the names, for messages.
+        Location ``FILE:LINE: `` of the names, for messages.
 
     Raises
     ------
     InputError
-        If the rotors do not fit the layout.
+        If the rotors do not match the layout.
     """
     if len(rotors) != len(layout):
         raise InputError(

@@ -1,8 +1,8 @@
-"""Recorded sessions: the answers of an autopilot in a flight, and digests of what it was asked.
+"""Recorded sessions: the answers of an autopilot in a flight, and digests of the requests.
 
-A session file is compressed with gzip. It has a line of JSON and one record for each answer. A
-record contains the CRC-32 of all packets since the last answer, and the answer in pieces. Each
-piece begins with its length; one of 255 bytes is followed by another.
+A session file is compressed with gzip. It contains a line of JSON, and one record for each answer.
+A record contains the CRC-32 of all packets since the last answer, and the answer in pieces. Each
+piece begins with its length; a piece of 255 bytes is followed by another one.
 """
 
 from __future__ import annotations
@@ -21,32 +21,32 @@ from ..support.output_files import atomic_write, printable_name
 
 _VERSION = 1
 _DIGEST = struct.Struct("<I")
-_PIECE = 255  # bytes
+_PIECE = 255  # maximum size of a piece, bytes
 
 Fail = Callable[[str], Exception]
 
 
 class Link(Protocol):
-    """Link to an autopilot that answers."""
+    """Connection to an autopilot that answers requests."""
 
     def send(self, packet: bytes, port: int, fail: Fail) -> None:
-        """Send a packet that is not answered."""
+        """Send a packet that has no answer."""
 
     def ask(self, packet: bytes, port: int, fail: Fail) -> bytes:
-        """Send a packet and return the answer."""
+        """Send a packet, and return the answer."""
 
 
 class Recorder:
-    """Link that records what passes through another one.
+    """Link that records the packets of another link.
 
     Parameters
     ----------
     link : Link
         Link to the autopilot.
     path : path
-        File to write, which appears when the exchange is closed.
+        Path of the file, which is written when the exchange is closed.
     about : dict
-        Description of the flight, in plain values.
+        Description of the flight as plain values.
     """
 
     def __init__(self, link: Link, path: Path, about: Dict[str, Any]) -> None:
@@ -56,12 +56,12 @@ class Recorder:
         self._digest = 0
 
     def send(self, packet: bytes, port: int, fail: Fail) -> None:
-        """Send a packet, as `Link.send`."""
+        """Send a packet as `Link.send` does."""
         self._digest = zlib.crc32(packet, self._digest)
         self._link.send(packet, port, fail)
 
     def ask(self, packet: bytes, port: int, fail: Fail) -> bytes:
-        """Ask, as `Link.ask`."""
+        """Send a request as `Link.ask` does, and record the answer."""
         answer = self._link.ask(packet, port, fail)
         digest = zlib.crc32(packet, self._digest)
         self._records.append(_DIGEST.pack(digest) + _join(answer))
@@ -78,7 +78,7 @@ class Recorder:
 
 
 class Session:
-    """Recorded session, which answers instead of the program.
+    """Recorded session that answers instead of the program.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class Session:
         self._digest = zlib.crc32(packet, self._digest)
 
     def ask(self, packet: bytes, port: int, fail: Fail) -> bytes:
-        """Return the recorded answer, if the flight has sent what was recorded."""
+        """Return the recorded answer if the packets match the recorded ones."""
         if self._next == len(self._records):
             raise fail(f"{self.file} ends here. Replay no more than was recorded.")
         digest, answer = self._records[self._next]
@@ -140,28 +140,28 @@ class Session:
         return answer
 
     def rewind(self) -> None:
-        """Return to the begin of the flight."""
+        """Return to the start of the flight."""
         self._digest = self._next = 0
 
     @property
     def is_at_end(self) -> bool:
-        """Whether all answers have been given."""
+        """Whether all recorded answers were used."""
         return self._next == len(self._records)
 
 
 def describe_session(
     stack: str, program: Path, settings: Mapping[str, Any], parameters: Mapping[str, str]
 ) -> Dict[str, Any]:
-    """Return the description of a flight for `Recorder`, in plain values.
+    """Return the description of a flight for `Recorder` as plain values.
 
     Parameters
     ----------
     stack
         Name of the stack.
     program
-        File of the program.
+        Path of the program.
     settings
-        Arguments of the class of the stack with which the session is replayed.
+        Arguments of the stack's class for the replay of the session.
     parameters
         Parameters of the autopilot.
     """
@@ -175,7 +175,7 @@ def describe_session(
 
 
 def _join(answer: bytes) -> bytes:
-    """Return the pieces of an answer."""
+    """Encode an answer in pieces."""
     pieces = [answer[at : at + _PIECE] for at in range(0, len(answer) + 1, _PIECE)]
     return b"".join(bytes([len(piece)]) + piece for piece in pieces)
 

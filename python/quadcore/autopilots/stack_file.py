@@ -1,4 +1,4 @@
-"""Stack files: an autopilot and how to start it, in YAML."""
+"""Stack files: YAML files that define an autopilot and its start."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..support.parameters import suggest
 from ..support.yaml_nodes import find_line, read_pairs, read_root, read_scalar
 
 KEY = "autopilot"
-"""Key by which a YAML file is a stack file."""
+"""Key that identifies a YAML file as a stack file."""
 
 _FORM = "a mapping with autopilot: and program:"
 
@@ -28,7 +28,7 @@ class StackFile(NamedTuple):
     kind : str
         Name of the stack.
     values : dict
-        Values by their keys; only those that the file gives.
+        Values by key, for the keys in the file.
     lines : dict of str to int
         Line of each key.
     """
@@ -39,12 +39,12 @@ class StackFile(NamedTuple):
     lines: Dict[str, int]
 
     def locate(self, key: str) -> str:
-        """Return ``FILE:LINE: `` of a key, or of the file."""
+        """Return the location ``FILE:LINE: `` of a key, or of the file."""
         return f"{self.file}:{self.lines.get(key, 1)}: "
 
 
 def is_stack_file(path: Union[str, Path]) -> bool:
-    """Whether a YAML file has the key of stack files; also False if it cannot be read."""
+    """Whether a YAML file is a stack file; False if it cannot be read."""
     try:
         root = read_root(Path(path))
     except InputError:
@@ -67,7 +67,7 @@ def read_stack_file(path: Union[str, Path], kinds: Tuple[str, ...]) -> StackFile
     Raises
     ------
     InputError
-        If the file is missing or wrong; the message begins with ``FILE:LINE``.
+        If the file is missing or invalid; the message begins with ``FILE:LINE``.
     """
     path = Path(path)
     file = printable_name(path)
@@ -92,7 +92,7 @@ def read_stack_file(path: Union[str, Path], kinds: Tuple[str, ...]) -> StackFile
             f"Use one of {', '.join(kinds)}."
         )
     for name in ("program", "pilot"):
-        if "/" in values.get(name, ""):  # relative to the file, wherever quadcore runs
+        if "/" in values.get(name, ""):  # relative to the stack file, not to the working folder
             values[name] = str((path.parent / values[name]).absolute())
     return StackFile(file, kind, values, lines)
 

@@ -19,16 +19,16 @@ from .stack_file import StackFile, read_stack_file
 
 
 class Stack(NamedTuple):
-    """Autopilot that a bridge exists for."""
+    """Autopilot for which a bridge exists."""
 
     summary: str
-    """Noun phrase for lists."""
+    """Noun phrase for lists of stacks."""
     make: Callable[..., Autopilot]
-    """Makes the controller from the values of a stack file."""
+    """Function that makes the controller from the values of a stack file."""
     is_module: bool
-    """Whether the program is a Python module, which runs in this process."""
+    """Whether the program is a Python module that runs in this process."""
     keys: Sequence[str]
-    """Keys of stack files that other stacks need not have."""
+    """Keys of stack files that not all stacks support."""
 
 
 STACKS: Dict[str, Stack] = {
@@ -51,7 +51,7 @@ STACKS: Dict[str, Stack] = {
         "PX4 SITL over TCP, offboard mode, with simulated sensors", PX4, False, ("arguments",)
     ),
 }
-"""Stacks by their names in stack files."""
+"""Stacks by their name in stack files."""
 
 
 def read_autopilot(path: Union[str, Path]) -> Autopilot:
@@ -65,7 +65,7 @@ def read_autopilot(path: Union[str, Path]) -> Autopilot:
     Raises
     ------
     InputError
-        If the file is missing or wrong; the message begins with ``FILE:LINE``.
+        If the file is missing or invalid; the message begins with ``FILE:LINE``.
     """
     read = read_stack_file(path, tuple(STACKS))
     stack = STACKS[read.kind]
@@ -90,7 +90,7 @@ def read_autopilot(path: Union[str, Path]) -> Autopilot:
 
 
 def make_replay(session: Session) -> Autopilot:
-    """Make the controller of a recorded session, which starts no program.
+    """Make the controller that replays a recorded session; it starts no program.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def make_replay(session: Session) -> Autopilot:
 
 
 def _find_program(read: StackFile) -> str:
-    """Return the path of the program; raises `InputError` if there is none."""
+    """Return the path of the program; raise `InputError` if it does not exist."""
     name: str = read.values["program"]
     found = shutil.which(name)
     if found is None:
@@ -119,7 +119,7 @@ def _find_program(read: StackFile) -> str:
 
 
 def _find_module(read: StackFile) -> str:
-    """Return the path of the module; raises `InputError` if there is none."""
+    """Return the path of the module; raise `InputError` if it does not exist."""
     name: str = read.values["program"]
     if not Path(name).is_file():
         raise InputError(
@@ -130,7 +130,7 @@ def _find_module(read: StackFile) -> str:
 
 
 def _find_pilot(read: StackFile) -> Any:
-    """Import the function of an own pilot."""
+    """Import a user-defined pilot function."""
     try:
         return find_controller(read.values["pilot"], lambda found: found)
     except InputError as error:

@@ -16,16 +16,16 @@ _MOST = 3.0  # m/s^2; limit of the integral
 
 
 class Sticks(NamedTuple):
-    """Positions of the sticks of a radio; roll, pitch and yaw are from -1 to 1."""
+    """Stick positions of a radio; roll, pitch and yaw range from -1 to 1."""
 
     roll: float = 0.0
-    """Positive rolls to the right."""
+    """Positive values roll to the right."""
     pitch: float = 0.0
-    """Positive lowers the nose."""
+    """Positive values lower the nose."""
     yaw: float = 0.0
-    """Positive turns clockwise, seen from above."""
+    """Positive values turn clockwise, seen from above."""
     throttle: float = 0.0
-    """From 0 to 1."""
+    """Throttle from 0 to 1."""
     is_armed: bool = False
     """Position of the arming switch."""
 
@@ -33,22 +33,22 @@ class Sticks(NamedTuple):
 class StickPilot:
     """Position controller that moves the sticks of a self-levelling autopilot.
 
-    A PID controller with feed-forward gives the acceleration. The direction of the thrust gives
-    roll and pitch, and its magnitude the throttle. The gains suit an attitude response of about
-    0.15 s.
+    A PID controller with feed-forward computes the acceleration. The direction of the thrust
+    determines roll and pitch, and its magnitude determines the throttle. The gains suit an attitude
+    response time of about 0.15 s.
 
     Parameters
     ----------
     vehicle : Vehicle
-        Vehicle to fly.
+        Vehicle to control.
     curve : MotorCurve
         Motor curve of the vehicle.
     period : float
         Time between calls, s.
     max_angle : float
-        Angle of a full roll or pitch stick, rad.
+        Angle at full roll or pitch stick, rad.
     max_yaw_rate : float
-        Yaw rate of a full yaw stick, rad/s.
+        Yaw rate at full yaw stick, rad/s.
     idle : float
         Output of an armed motor at zero throttle, from 0 to 1.
     """
@@ -71,12 +71,12 @@ class StickPilot:
 
     @property
     def hover(self) -> Sticks:
-        """Sticks of a level hover, armed."""
+        """Stick positions for level hover, with the vehicle armed."""
         throttle = self._find_throttle(self._mass * self._gravity)
         return Sticks(throttle=throttle, is_armed=True)
 
     def fly(self, state: Any, reference: Any) -> Sticks:
-        """Return the sticks that lead to a reference.
+        """Return the sticks that follow a reference.
 
         Parameters
         ----------
@@ -89,7 +89,8 @@ class StickPilot:
         slip = np.asarray(reference.velocity) - state.linear_velocity
         feedback = _POSITION * error + _VELOCITY * slip
         wanted = np.asarray(reference.acceleration) + feedback + self._integral
-        # The integral of the feedback over a move from rest to rest is 0: it does not overshoot.
+        # The integral of the feedback over a move from rest to rest is 0, so the move does not
+        # overshoot.
         change = self._period * _INTEGRAL * feedback
         self._integral = np.minimum(np.maximum(self._integral + change, -_MOST), _MOST)
         force = self._mass * (wanted + np.array([0, 0, self._gravity]))
@@ -113,7 +114,7 @@ class StickPilot:
         )
 
     def _find_throttle(self, thrust: float) -> float:
-        """Return the throttle at which the rotors exert a thrust (N)."""
+        """Return the throttle at which the rotors produce a thrust (N)."""
         speed = np.sqrt(max(thrust, 0.0) / self._lift)
         output = float(np.mean(self._curve.find_outputs(np.full(self._count, speed))))
         return min(max((output - self._idle) / (1 - self._idle), 0.0), 1.0)

@@ -20,18 +20,18 @@ _START = 10 * 10**9  # ns; kStart of cpp/lockstep/preload.cpp
 _WAIT = 50_000  # ns
 _WAITS = 400
 _ADVICE = "If it is linked statically, use lockstep: plain in the stack file."
-_LOOK = 256  # ticks between two looks at the messages of the program
+_LOOK = 256  # ticks between checks for messages of the program
 
 
 class StrictExchange(Exchange):
-    """Exchange in which the clock of the program stands still between two ticks.
+    """Exchange in which the clock of the program stops between ticks.
 
     The library ``cpp/lockstep/preload.cpp`` is preloaded into the program. The main thread of the
-    program waits at a horizon of time. In each tick, the program first handles the packets. Then
-    the horizon moves by one period, and the program computes up to there. The event that ends the
-    tick carries the outputs. If the loop is late and has sent no outputs by then, the horizon moves
-    on in pieces of 50 us, up to 20 ms. Betaflight scales its clock by the times in the packets, so
-    that it follows the simulation all the same.
+    program waits at a time horizon. In each tick, the program first handles the packets. Then the
+    horizon moves by one period, and the program computes up to this time. The event that ends the
+    tick contains the outputs. If the loop is late and has sent no outputs, the horizon moves on in
+    pieces of 50 us, up to 20 ms. Betaflight scales its clock by the times in the packets, so it
+    still follows the simulation.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class StrictExchange(Exchange):
     Attributes
     ----------
     missed : int
-        Number of ticks in which the program sent no outputs after its first ones.
+        Number of ticks without outputs after the first ones.
     """
 
     def __init__(self, program: Program, period: float) -> None:
@@ -60,7 +60,7 @@ class StrictExchange(Exchange):
     def describe_environment(
         self, ports: Dict[int, int], answers: int
     ) -> Tuple[Dict[str, str], Tuple[int, ...]]:
-        """Return the environment of the program, and the file descriptors to pass on.
+        """Return the environment of the program, and the file descriptors that it inherits.
 
         Parameters
         ----------
@@ -88,7 +88,7 @@ class StrictExchange(Exchange):
     def ask(self, packet: bytes, port: int, fail: Callable[[str], Exception]) -> bytes:
         """Send a packet, let the program compute one period, and return its latest outputs.
 
-        They are empty as long as the program has sent none.
+        The outputs are empty until the program has sent some.
         """
         began = time.perf_counter()
         super().send(packet, port, fail)
@@ -119,7 +119,7 @@ class StrictExchange(Exchange):
         self._theirs.close()
 
     def _move(self, duration: int, fail: Callable[[str], Exception]) -> bytes:
-        """Let the program compute for a duration (ns), and return its latest outputs, if any."""
+        """Let the program compute for a duration (ns), and return its latest outputs."""
         self._horizon += duration
         try:
             self._control.send(_COMMAND.pack(self._horizon, self._sent))
@@ -128,7 +128,7 @@ class StrictExchange(Exchange):
         return self._wait(fail)
 
     def _wait(self, fail: Callable[[str], Exception]) -> bytes:
-        """Wait until the program stands, and return its latest outputs; fails only if it ends."""
+        """Wait until the program stops at the horizon, and return its latest outputs."""
         waiting = Waiting(self._program, fail, _ADVICE)
         while True:
             try:

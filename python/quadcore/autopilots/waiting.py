@@ -1,4 +1,4 @@
-"""Waits for the answers of an autopilot, as long as its program lives."""
+"""Waiting for the answers of an autopilot while its program runs."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from ..support.warning import warn
 from .program import Program
 
 PATIENCE = 2.0
-"""Time without an answer after which a warning says that quadcore waits, s."""
+"""Time without an answer after which a warning is issued, s."""
 
 
 class Waiting:
-    """Wait for one answer.
+    """Wait for a single answer.
 
     Parameters
     ----------
     program : Program
-        Program that is to answer.
+        Program that should answer.
     fail : callable
-        Makes the error of a reason.
+        Function that makes an error from a reason.
     advice : str, default ""
         Sentence for the warning. Default: the last messages of the program.
     """
@@ -35,7 +35,7 @@ class Waiting:
         self._has_warned = False
 
     def look(self) -> None:
-        """Raise an error if the program has ended, and warn once if it is silent for long."""
+        """Raise an error if the program has ended, and warn once about a long silence."""
         self._program.read_messages()
         if self._program.has_ended():
             raise self._fail(self._program.describe_end())
@@ -48,7 +48,7 @@ class Waiting:
 
 
 def describe_durations(durations: Sequence[float]) -> str:
-    """Describe the number of answers and the times until them (s)."""
+    """Describe the number of answers and their durations (s)."""
     if not durations:
         return "no answers"
     median, slow = np.quantile(durations, [0.5, 0.99]) * 1e6

@@ -26,7 +26,7 @@ from .msp import Msp
 from .packets import RAW_PORT, Ports, pack_radio, pack_state, read_motors
 from .parameters import COMMANDS, DEFAULTS, IDLE, MAX_ANGLE, MAX_YAW_RATE, write_parameters
 
-_ARM = 1.5  # s before the flight
+_ARM = 1.5  # s; time of arming before the flight
 _LOGGED = ("roll", "pitch", "yaw", "throttle", "arming_switch", "armed")
 _STILL = (0.0, 0.0, 0.0, 0.0)
 
@@ -34,29 +34,29 @@ OwnPilot = Callable[[float, Any, Any], Sticks]
 
 
 class Betaflight(ProgramAutopilot):
-    """Controller that flies an unmodified Betaflight SITL program.
+    """Controller that runs an unmodified Betaflight SITL program.
 
     Parameters
     ----------
     program : str
-        Betaflight's program.
+        Path of Betaflight's program.
     arguments : sequence of str, default ()
-        Arguments of the program. ``{motors}``, ``{state}``, ``{radio}`` and ``{msp}`` stand for
-        free ports in the plain lockstep. Without them, Betaflight's fixed ports are used there, so
-        that one flight runs at a time.
+        Arguments of the program. In plain lockstep, ``{motors}``, ``{state}``, ``{radio}`` and
+        ``{msp}`` are replaced by free ports. Without them, Betaflight uses its fixed ports, so only
+        one flight can run at a time.
     parameters : mapping of str to str, default {}
-        Parameters of Betaflight by name, which are set before the flight and read back.
+        Parameters of Betaflight by name. They are set before the flight and read back.
     commands : sequence of str, default ()
-        Other lines of Betaflight's command line, such as ``aux 2 ...``.
+        Additional lines for Betaflight's command line, such as ``aux 2 ...``.
     pilot : callable, optional
         Function ``pilot(t, state, reference)`` that returns `Sticks`. Default: a pilot that follows
-        the reference in the level mode.
+        the reference in level mode.
     hold : float, default 8
         Duration of the phase before the flight, s. Betaflight arms 1.5 s before its end.
     lockstep : {"strict", "plain"}, default "strict"
-        "strict" preloads a library that controls the clock of the program: flights are
-        bit-identical and several may run at once. "plain" exchanges packets with a program on
-        its own clock.
+        "strict" preloads a library that controls the clock of the program. Flights are then
+        bit-identical, and several can run at once. "plain" exchanges packets with a program that
+        has its own clock.
     motor_curve, rotors, imu, where
         As for `Autopilot`.
     """
@@ -91,7 +91,7 @@ class Betaflight(ProgramAutopilot):
         self._check_hold("Betaflight", _ARM)
 
     def start(self, vehicle: Vehicle) -> None:
-        """Write the parameters and start the program."""
+        """Write the parameters, and start the program."""
         self._location = find_location(vehicle.world)
         self._pilot = StickPilot(
             vehicle,
@@ -115,7 +115,7 @@ class Betaflight(ProgramAutopilot):
         self._watch = ArmingWatch(self.fail, self._quote_messages)
 
     def tick(self, readings: Readings, sticks: Sticks) -> Sequence[float]:
-        """Send the radio's channels and the state, and wait for the outputs."""
+        """Send the radio channels and the state, and wait for the outputs."""
         exchange = self._exchange if readings.time < 0 else self._flight_exchange
         assert exchange is not None
         if self._first is None:
@@ -130,7 +130,7 @@ class Betaflight(ProgramAutopilot):
             exchange.send(pack_radio(time, sticks), self.ports.radio, fail)
         fields = frames.convert_readings(readings, self._first, self._location)
         answer = exchange.ask(pack_state(time, fields), self.ports.state, fail)
-        if not answer and self._is_strict and readings.time < 0:  # it is still starting
+        if not answer and self._is_strict and readings.time < 0:  # the program is still starting
             return _STILL
         outputs, problem = read_motors(answer)
         if outputs is None:
@@ -141,11 +141,11 @@ class Betaflight(ProgramAutopilot):
         return [max(0.0, min(1.0, output)) for output in outputs]
 
     def pilot(self, t: float, state: Any, reference: Any) -> Sticks:
-        """Arm before the flight, then follow the reference."""
+        """Arm before the flight, and follow the reference in flight."""
         assert self._pilot is not None
         if t < -_ARM:
             return Sticks()
-        if t < 0:  # without throttle, the integrators of an autopilot that is held tilted stay 0
+        if t < 0:  # without throttle, the integrators of a tilted autopilot stay 0
             return Sticks(is_armed=True)
         if self._own_pilot is not None:
             return self._own_pilot(t, state, reference)
@@ -156,7 +156,7 @@ class Betaflight(ProgramAutopilot):
         return Msp(self.ports.msp, tick)
 
     def _start_strict(self, program: Program) -> None:
-        """Start the program with a clock that quadcore controls, and with ports of its own."""
+        """Start the program with a clock that quadcore controls, and with its own ports."""
         self._exchange = exchange = StrictExchange(program, self.period)
         self.ports = _find_free_ports()
         replaced = {**dict(zip(Ports(), self.ports)), RAW_PORT: 0}

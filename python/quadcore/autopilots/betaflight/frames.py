@@ -1,13 +1,14 @@
-"""Axes and signs of Betaflight's SITL, in one function.
+"""Conversion to the axes and signs of Betaflight's SITL.
 
 Betaflight's `src/platform/SIMULATOR/sitl.c` (commit 301d01a, default build with
-``ENABLE_GAZEBO_BRIDGE`` 1) reads a packet of state as follows. Its body axes are forward, left, up.
+``ENABLE_GAZEBO_BRIDGE`` 1) interprets a state packet as follows. Its body axes are forward, left,
+up.
 
 - angular velocity p: gyro = (p_x, -p_y, p_z)
-- acceleration a: accelerometer = -a, the specific force
-- quaternion q = (w, x, y, z): attitude in north, west, up = Rz(90 deg) (w, x, -y, -z)
-- position (lon, lat, alt): mirrored about the first packet's, so that the east and the north of
-  later packets change sign
+- acceleration a: accelerometer = -a, which is the specific force
+- quaternion q = (w, x, y, z): attitude in north, west, up axes = Rz(90 deg) (w, x, -y, -z)
+- position (lon, lat, alt): mirrored about the first packet, so east and north of later packets
+  change sign
 - velocity: east, north, up
 
 The functions below are the inverse of these rules.
@@ -22,13 +23,13 @@ import numpy as np
 from ...model.earth import Location
 from ..readings import Readings
 
-_PRESSURE = 101325.0  # Pa; the default build computes it from the altitude
+_PRESSURE = 101325.0  # Pa; the default build computes the pressure from the altitude
 
 
 def convert_readings(
     readings: Readings, first: np.ndarray, location: Location
 ) -> Tuple[float, ...]:
-    """Return the fields of Betaflight's packet of state, without its time.
+    """Return the fields of Betaflight's state packet, except for its time.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ def convert_readings(
     return (
         *(wx, -wy, wz),
         *(-ax, -ay, -az),
-        *(-z, -y, -x, -w),  # Rz(180 deg) q = (-z, -y, x, w), then y and z change sign
+        *(-z, -y, -x, -w),  # Rz(180 deg) q = (-z, -y, x, w), with the signs of y and z changed
         *readings.linear_velocity.tolist(),
         longitude,
         latitude,

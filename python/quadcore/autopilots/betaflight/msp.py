@@ -1,4 +1,4 @@
-"""Questions to Betaflight by MSP (MultiWii Serial Protocol) version 1 over TCP."""
+"""Questions to Betaflight over TCP with MSP (MultiWii Serial Protocol) version 1."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from ..exchange import HOST
 
 _ATTITUDE, _SET_MOTOR = 108, 214  # src/main/msp/msp_protocol.h
 _START = b"$M>"
-_PAUSE = 1e-3  # s; between two looks for an answer
+_PAUSE = 1e-3  # s; interval between checks for an answer
 _LOOKS = 5000
-_LONGEST = 1024  # bytes
+_LONGEST = 1024  # maximum number of bytes per read
 
 
 class Msp:
@@ -23,14 +23,14 @@ class Msp:
     Parameters
     ----------
     port : int
-        TCP port of this machine.
+        TCP port on this machine.
     tick : callable
-        Lets the program compute one period, because it answers from its main loop.
+        Function that lets the program compute one period, because it answers in its main loop.
 
     Raises
     ------
     InputError
-        If the program does not listen on the port or does not answer as MSP describes.
+        If the program does not listen on the port, or its answers violate the protocol.
     """
 
     def __init__(self, port: int, tick: Callable[[], object]) -> None:
@@ -46,13 +46,13 @@ class Msp:
         self._socket.settimeout(_PAUSE)
 
     def read_attitude(self) -> Tuple[float, float, float]:
-        """Return the estimated roll, pitch and yaw, rad; axes forward, left, up."""
+        """Return the estimated roll, pitch and yaw, rad, for forward, left, up axes."""
         roll, pitch, heading = struct.unpack_from("<hhh", self._ask(_ATTITUDE, b"", 6))
         # A lowered nose is a positive pitch, as about an axis to the left. Headings are clockwise.
         return math.radians(roll / 10), math.radians(pitch / 10), -math.radians(heading)
 
     def set_motors(self, outputs: Sequence[float]) -> None:
-        """Turn the motors of a disarmed autopilot at some outputs, from 0 to 1."""
+        """Run the motors of a disarmed autopilot at these outputs, from 0 to 1."""
         self._ask(_SET_MOTOR, struct.pack("<4H", *(1000 + round(1000 * x) for x in outputs)), 0)
 
     def close(self) -> None:
@@ -60,7 +60,7 @@ class Msp:
         self._socket.close()
 
     def _ask(self, command: int, payload: bytes, size: int) -> bytes:
-        """Send a request, and return the payload of the answer, which has at least a size."""
+        """Send a request, and return the payload of the answer, which has at least `size` bytes."""
         body = bytes([len(payload), command]) + payload
         self._socket.sendall(b"$M<" + body + bytes([_compute_checksum(body)]))
         for _ in range(_LOOKS):

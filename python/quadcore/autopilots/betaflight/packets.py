@@ -1,4 +1,4 @@
-"""Packets of Betaflight's SITL (`target/SITL/target.h`): structures in little-endian order."""
+"""Packets of Betaflight's SITL (`target/SITL/target.h`): little-endian structures."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ _RADIO = struct.Struct("<d16H")  # rc_packet
 _MOTORS = struct.Struct("<4f")  # servo_packet
 
 RAW_PORT = 9001
-"""UDP: the autopilot sends pulse widths here, which quadcore does not use."""
+"""UDP port to which the autopilot sends pulse widths; quadcore does not use them."""
 
 _CENTRE, _HALF = 1500, 500  # us
 
 
 class Ports(NamedTuple):
-    """Ports of 127.0.0.1."""
+    """Ports on 127.0.0.1."""
 
     motors: int = 9002
-    """UDP: the autopilot sends the outputs here."""
+    """UDP port to which the autopilot sends the outputs."""
     state: int = 9003
-    """UDP: the autopilot receives the state here."""
+    """UDP port on which the autopilot receives the state."""
     radio: int = 9004
-    """UDP: the autopilot receives the channels of the radio here."""
+    """UDP port on which the autopilot receives the radio channels."""
     msp: int = 5761
-    """TCP: the autopilot answers questions here."""
+    """TCP port on which the autopilot answers questions."""
 
 
 def pack_state(time: float, fields: Sequence[float]) -> bytes:
@@ -37,7 +37,7 @@ def pack_state(time: float, fields: Sequence[float]) -> bytes:
 
 
 def pack_radio(time: float, sticks: Sticks) -> bytes:
-    """Pack a time (s) and the channels roll, pitch, throttle, yaw, arming switch, level mode."""
+    """Pack a time (s) and the channels: roll, pitch, throttle, yaw, arming switch, level mode."""
     levels = (sticks.roll, sticks.pitch, 2 * sticks.throttle - 1, sticks.yaw)
     channels = [_CENTRE + round(_HALF * level) for level in levels]
     switches = [_CENTRE + _HALF * (1 if is_on else -1) for is_on in (sticks.is_armed, True)]
@@ -46,7 +46,7 @@ def pack_radio(time: float, sticks: Sticks) -> bytes:
 
 
 def read_motors(packet: bytes) -> Tuple[Optional[Tuple[float, ...]], str]:
-    """Return the outputs of a packet, or None and what is wrong with it."""
+    """Return the outputs in a packet, or None and the error."""
     if len(packet) != _MOTORS.size:
         return None, f"a packet of motors has {len(packet)} bytes instead of {_MOTORS.size}"
     outputs = _MOTORS.unpack(packet)

@@ -1,4 +1,4 @@
-"""Parameters of Betaflight: written into its memory before the flight, and read back."""
+"""Parameters of Betaflight, which are written to its memory before the flight and read back."""
 
 from __future__ import annotations
 
@@ -8,31 +8,31 @@ from typing import Mapping, Sequence
 from ..._core import InputError
 from ..program import Program
 
-MAX_ANGLE = 60.0  # deg; of a full stick in level mode
-MAX_YAW_RATE = 200.0  # deg/s; of a full stick
-IDLE = 0.055  # output of an armed motor without throttle
+MAX_ANGLE = 60.0  # deg; at full stick in level mode
+MAX_YAW_RATE = 200.0  # deg/s; at full stick
+IDLE = 0.055  # output of an armed motor at zero throttle
 
 _RATE = f"{MAX_YAW_RATE / 10:.0f}"
 
 DEFAULTS = {
     "acc_calibration": "0,0,0,1",  # the accelerometer is exact
-    "small_angle": "180",  # arms in any attitude
+    "small_angle": "180",  # allows arming in any attitude
     "motor_pwm_protocol": "PWM",
     "motor_idle": f"{IDLE * 10000:.0f}",
     "angle_limit": f"{MAX_ANGLE:.0f}",
     "rates_type": "ACTUAL",
-    # Centre sensitivity = maximum rate makes the sticks linear.
+    # Equal centre sensitivity and maximum rate make the sticks linear.
     **{
         f"{axis}_{name}": value
         for axis in ("roll", "pitch", "yaw")
         for name, value in (("rc_rate", _RATE), ("srate", _RATE), ("expo", "0"))
     },
 }
-"""Parameters that the stick pilot relies on, with their values."""
+"""Parameters on which the stick pilot relies."""
 
 COMMANDS = (
     "aux 0 0 0 1700 2100 0 0",  # the first switch arms
-    "aux 1 1 1 1700 2100 0 0",  # the second selects the level mode
+    "aux 1 1 1 1700 2100 0 0",  # the second switch selects the level mode
 )
 
 _CONFIG = "quadcore.txt"
@@ -51,7 +51,7 @@ def write_parameters(
     Parameters
     ----------
     program
-        Program, not yet started.
+        Program that has not started yet.
     command
         Program and arguments.
     environment
@@ -59,14 +59,14 @@ def write_parameters(
     parameters
         Values by name.
     commands
-        Other lines of Betaflight's command line.
+        Additional lines for Betaflight's command line.
     where
-        ``FILE:LINE: `` by name, for messages.
+        Locations ``FILE:LINE: `` by name, for messages.
 
     Raises
     ------
     InputError
-        If Betaflight refuses a line, or has another value afterwards.
+        If Betaflight rejects a line, or reports another value afterwards.
     """
     at = where.get("parameters", "")
     lines = [f"set {name} = {value}" for name, value in parameters.items()]

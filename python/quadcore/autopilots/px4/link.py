@@ -1,7 +1,7 @@
 """Connections to PX4: TCP for sensors and motors, UDP for set-points and telemetry.
 
-PX4 connects to TCP port 4560 + i, where i is its instance number. It receives MAVLink at UDP port
-14580 + i and sends it to 14540 + i (``ROMFS/px4fmu_common/init.d-posix/px4-rc.mavlink``).
+PX4 connects to TCP port 4560 + i, where i is its instance number. It receives MAVLink on UDP port
+14580 + i, and sends it to port 14540 + i (``ROMFS/px4fmu_common/init.d-posix/px4-rc.mavlink``).
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ from ..program import Program
 from ..waiting import Waiting, describe_durations
 
 _SIMULATOR, _OFFBOARD, _TELEMETRY, _GROUND = 4560, 14580, 14540, 18570
-_INSTANCES = 10  # PX4 sends the telemetry of further ones to one port
+_INSTANCES = 10  # PX4 sends the telemetry of higher instances to a single port
 
-_MOTORS = 93  # MAVLink number of HIL_ACTUATOR_CONTROLS, which answers HIL_SENSOR
+_MOTORS = 93  # MAVLink number of HIL_ACTUATOR_CONTROLS, the answer to HIL_SENSOR
 
-_LOOK = 0.25  # s; time between looks at the program
-_STARTING = 0.05  # s; wait for an answer while PX4 starts, in which it gives none
+_LOOK = 0.25  # s; interval between checks of the program
+_STARTING = 0.05  # s; time limit for an answer while PX4 starts, when it may not answer
 _MAGIC, _HEAD, _TAIL, _SIGNATURE = 0xFD, 10, 2, 13  # MAVLink 2
 
 Fail = Callable[[str], Exception]
 
 
 class Px4Link:
-    """Connections to one PX4.
+    """Connections to one PX4 program.
 
     Parameters
     ----------
     program : Program
-        Program of PX4, to be started after the link.
+        PX4 program, which is started after the link.
 
     Attributes
     ----------
     instance : int
-        Instance number with which PX4 is to be started.
+        Instance number for the start of PX4.
     durations : list of float
         Time until each answer, s.
 
@@ -74,13 +74,13 @@ class Px4Link:
         self._poll.register(self._socket, select.POLLIN)
 
     def send(self, packet: bytes, port: int, fail: Fail) -> None:
-        """Send a packet by UDP that is not answered."""
+        """Send a UDP packet that has no answer."""
         self._radio.sendto(packet, (HOST, _OFFBOARD + self.instance))
 
     def ask(self, packet: bytes, port: int, fail: Fail) -> bytes:
-        """Send sensors, and return the motors and the telemetry that has arrived.
+        """Send sensor data, and return the motors and the received telemetry.
 
-        Until PX4 answers for the first time, the result may lack the motors.
+        Until the first answer of PX4, the result may lack the motors.
         """
         began = time.perf_counter()
         try:
@@ -101,7 +101,7 @@ class Px4Link:
         self._stack.close()
 
     def _wait(self, asked: int, fail: Fail) -> bytes:
-        """Return the motors for sensors of a time (us), or nothing if PX4 is still starting."""
+        """Return the motors for sensor data of a time (us); empty if PX4 is still starting."""
         waiting = Waiting(self._program, fail)
         while True:
             for frame in self._split():
@@ -120,7 +120,7 @@ class Px4Link:
                     return b""
 
     def _split(self) -> Iterator[bytes]:
-        """Yield the whole frames that have arrived, and keep the rest."""
+        """Yield the complete frames that have arrived, and keep the rest."""
         while len(self._rest) >= _HEAD and len(self._rest) >= find_length(self._rest):
             length = find_length(self._rest)
             frame, self._rest = self._rest[:length], self._rest[length:]
@@ -132,31 +132,31 @@ class Px4Link:
                 yield self._radio.recv(65536)
 
     def _fail_at_end(self, fail: Fail) -> Exception:
-        time.sleep(_STARTING)  # until the system knows how it ended
+        time.sleep(_STARTING)  # until the system knows the exit status
         if self._program.has_ended():
             return fail(self._program.describe_end())
         return fail(f"the autopilot has closed the connection. {self._program.describe_messages()}")
 
 
 def find_length(frame: bytes) -> int:
-    """Return the length of a MAVLink 2 frame from its head; 1 for a byte that begins none."""
+    """Return the length of a MAVLink 2 frame from its head; 1 if no frame begins here."""
     if frame[0] != _MAGIC:
         return 1
     return _HEAD + frame[1] + _TAIL + (_SIGNATURE if frame[2] & 1 else 0)
 
 
 def find_number(frame: bytes) -> int:
-    """Return the number of the message in a frame."""
+    """Return the message number of a frame."""
     return int.from_bytes(frame[7:_HEAD], "little")
 
 
 def find_time(frame: bytes) -> int:
-    """Return the time (us) with which HIL_SENSOR and HIL_ACTUATOR_CONTROLS begin."""
+    """Return the time (us) at the start of HIL_SENSOR and HIL_ACTUATOR_CONTROLS."""
     return int.from_bytes(frame[_HEAD : _HEAD + 8], "little")
 
 
 def _open_sockets() -> Tuple[int, socket.socket, socket.socket]:
-    """Return a free instance number, a TCP server and a UDP socket on its ports."""
+    """Return a free instance number, and a TCP server and a UDP socket on its ports."""
     last = None
     for attempt in range(_INSTANCES):
         instance = (os.getpid() + attempt) % _INSTANCES

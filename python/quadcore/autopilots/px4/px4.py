@@ -1,7 +1,8 @@
 """Bridge to PX4's SITL program.
 
-It follows the source of PX4, commit 34160bb6, ``src/modules/simulator/simulator_mavlink.cpp``: PX4
-takes its time from HIL_SENSOR and answers each of them with HIL_ACTUATOR_CONTROLS.
+The bridge follows the source of PX4, commit 34160bb6,
+``src/modules/simulator/simulator_mavlink.cpp``. PX4 takes its time from HIL_SENSOR, and answers
+each HIL_SENSOR with HIL_ACTUATOR_CONTROLS.
 """
 
 from __future__ import annotations
@@ -33,33 +34,33 @@ ARGUMENTS = ("-d", "{etc}", "-s", "etc/init.d-posix/rcS", "-i", "{instance}")
 """Default arguments of the program."""
 
 _ENVIRONMENT = {"PX4_SIM_MODEL": "iris"}
-_START = 1_000_000  # us; time of PX4 in the first tick
-_ARM = 5.0  # s before the flight
-_SHORTEST = 8.0  # s; PX4 aligns its estimator in about 7 s
+_START = 1_000_000  # us; time of PX4 at the first tick
+_ARM = 5.0  # s; time of arming before the flight
+_SHORTEST = 8.0  # s; minimum `hold`, because PX4 aligns its estimator in about 7 s
 _QUESTION, _GPS, _AIR = 25, 25, 5  # ticks between packets
-_SYSTEM = 255  # number of quadcore
+_SYSTEM = 255  # MAVLink system number of quadcore
 _ARMED = 128  # flag in the mode of HIL_ACTUATOR_CONTROLS
 
 
 class Target(NamedTuple):
-    """Target that PX4 is to follow."""
+    """Target for PX4 to follow."""
 
     reference: Any
     """Value of the reference; None before the flight."""
 
 
 class PX4(ProgramAutopilot):
-    """Controller that flies a PX4 SITL program in its offboard mode.
+    """Controller that runs a PX4 SITL program in offboard mode.
 
     Parameters
     ----------
     program : str
-        PX4's program, ``build/px4_sitl_default/bin/px4``.
+        Path of PX4's program, ``build/px4_sitl_default/bin/px4``.
     arguments : sequence of str, default `ARGUMENTS`
-        Arguments of the program. ``{etc}`` stands for the folder ``etc`` of the build, and
-        ``{instance}`` for a free instance number.
+        Arguments of the program. ``{etc}`` is replaced by the folder ``etc`` of the build, and
+        ``{instance}`` by a free instance number.
     parameters : mapping of str to str, default {}
-        Parameters of PX4 by name, which are set before the flight and read back.
+        Parameters of PX4 by name. They are set before the flight and read back.
     hold : float, default 20
         Duration of the phase before the flight, s. PX4 arms 5 s before its end.
     motor_curve, rotors, imu, where
@@ -122,7 +123,7 @@ class PX4(ProgramAutopilot):
         self._flight_link = self.record_link(link, about)
 
     def tick(self, readings: Readings, sticks: Any) -> Sequence[float]:
-        """Send sensors and the set-point, and wait for the motors."""
+        """Send sensor data and the set-point, and wait for the motors."""
         time = readings.time
         link = self._exchange if time < 0 else self._flight_link
         assert link is not None
@@ -153,7 +154,7 @@ class PX4(ProgramAutopilot):
         return self._outputs
 
     def pilot(self, t: float, state: Any, reference: Any) -> Target:
-        """Return the reference, which PX4 follows."""
+        """Return the reference for PX4 to follow."""
         if t >= 0 and reference is None:
             raise InputError("PX4 needs a reference. Add --reference hover.")
         return Target(reference)
@@ -161,7 +162,7 @@ class PX4(ProgramAutopilot):
     def _prepare(
         self, link: Link, time: float, set_points: SetPoints, fail: Callable[[str], FlightError]
     ) -> None:
-        """Set parameters, select the offboard mode and arm, one after the other."""
+        """Set parameters, select the offboard mode and arm, one step at a time."""
         if not self._writer.is_done:
             if time >= -_ARM:
                 raise InputError(self._writer.describe_missing())

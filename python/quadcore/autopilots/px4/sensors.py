@@ -1,7 +1,7 @@
-"""Sensors of PX4's simulator interface: MAVLink packets HIL_SENSOR and HIL_GPS.
+"""Sensors of PX4's simulator interface: the MAVLink packets HIL_SENSOR and HIL_GPS.
 
 PX4 reads them in ``src/modules/simulator/simulator_mavlink.cpp`` (commit 34160bb6). Body axes are
-forward, right, down. PX4 takes sensors that never change for broken ones, so that each has noise.
+forward, right, down. PX4 treats sensors with constant values as broken, so each sensor has noise.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ _GYROSCOPE = 0.001  # rad/s; standard deviations of the noise
 _ACCELEROMETER = 0.02  # m/s^2
 _MAGNETOMETER = 0.0005  # Gauss
 _BAROMETER = 0.005  # hPa, about 4 cm
-_SEED = 4  # of the noise: the same in every flight
+_SEED = 4  # seed of the noise, equal in every flight
 
-_IMU, _FIELD, _AIR = 0x3F, 0x1C0, 0x1A00  # fields_updated; _AIR leaves out the dynamic pressure
+_IMU, _FIELD, _AIR = 0x3F, 0x1C0, 0x1A00  # fields_updated; _AIR excludes the dynamic pressure
 _GAUSS = 1e4  # per T
-_FIX_3D, _SATELLITES, _ACCURACY = 3, 10, 30  # accuracy in cm
+_FIX_3D, _SATELLITES, _ACCURACY = 3, 10, 30  # accuracy, cm
 
 
 class SensorPackets:
-    """Makes the packets of sensors.
+    """Makes the sensor packets.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class SensorPackets:
         self._random = np.random.default_rng(_SEED)
 
     def read_sensor(self, time: int, readings: Readings, has_air: bool) -> Any:
-        """Return HIL_SENSOR with the IMU, the magnetometer, and the barometer if wanted.
+        """Return HIL_SENSOR with the IMU and the magnetometer, and optionally the barometer.
 
         Parameters
         ----------
@@ -79,7 +79,7 @@ class SensorPackets:
         )
 
     def read_gps(self, time: int, readings: Readings) -> Any:
-        """Return HIL_GPS; arguments as for `read_sensor`."""
+        """Return HIL_GPS; the arguments are those of `read_sensor`."""
         latitude, longitude, altitude = self._location.locate(*readings.position.tolist())
         north, east, down = turn_world_vector(100 * readings.linear_velocity)
         course = math.degrees(math.atan2(east, north)) % 360
@@ -104,7 +104,7 @@ def find_pressure(altitude: float) -> float:
     Parameters
     ----------
     altitude
-        Altitude above the sea, m.
+        Altitude above sea level, m.
     """
     return float(1013.25 * (1 - 0.0065 * altitude / 288.15) ** 5.25588)
 

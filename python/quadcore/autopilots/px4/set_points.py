@@ -11,15 +11,15 @@ from ..axes import turn_heading, turn_world_vector
 from ..readings import Readings
 
 OFFBOARD = 6
-"""Main mode of PX4 in which it follows set-points."""
+"""Main mode in which PX4 follows set-points."""
 
 _CUSTOM_MODE = 1  # MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
-_AUTOPILOT = 1  # component
-_ALL = 0  # systems
+_AUTOPILOT = 1  # target component
+_ALL = 0  # target system: all
 
 
 class SetPoints:
-    """Makes set-points relative to the place at which PX4 started.
+    """Makes set-points relative to the position at which PX4 started.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class SetPoints:
         self._yaw = float(np.arctan2(forward[1], forward[0]))
 
     def follow(self, time: int, reference: Any) -> Any:
-        """Return the set-point of a reference; None: of the place and heading of the start.
+        """Return the set-point for a reference; None: the initial position and heading.
 
         Parameters
         ----------
@@ -56,10 +56,10 @@ class SetPoints:
             yaw, rate = reference.yaw, reference.yaw_rate
         return self._mavlink.MAVLink_set_position_target_local_ned_message(
             time,
-            _ALL,  # so that a recorded session does not depend on the instance number
+            _ALL,  # independent of the instance number, for recorded sessions
             _AUTOPILOT,
             self._mavlink.MAV_FRAME_LOCAL_NED,
-            0,  # nothing is ignored
+            0,  # all fields are valid
             *turn_world_vector(position),
             *turn_world_vector(velocity),
             *turn_world_vector(acceleration),
@@ -72,7 +72,7 @@ class SetPoints:
         return self._command(self._mavlink.MAV_CMD_DO_SET_MODE, _CUSTOM_MODE, OFFBOARD)
 
     def arm(self) -> Any:
-        """Return the command that arms."""
+        """Return the command to arm."""
         return self._command(self._mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1, 0)
 
     def _command(self, number: int, first: float, second: float) -> Any:

@@ -1,4 +1,4 @@
-"""Messages that PX4 sends about itself: its mode, its estimates and its texts."""
+"""Messages in which PX4 reports its mode, its estimates and texts."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from ..axes import turn_heading
 from .set_points import OFFBOARD
 
-_AUTOPILOT = 1  # component that flies
-_KEPT = 5  # texts
+_AUTOPILOT = 1  # component of the flight controller
+_KEPT = 5  # number of texts that are kept
 
 COLUMNS = ("mode", *(f"estimate_{name}" for name in ("x", "y", "z", "roll", "pitch", "yaw")))
 """Columns of the log."""
@@ -26,10 +26,10 @@ class Telemetry:
     mode : int
         Main mode of PX4; see `set_points.OFFBOARD`.
     texts : sequence of str
-        Last texts, such as the reasons for which PX4 does not arm.
+        Last texts, such as the reasons why PX4 does not arm.
     columns : dict of str to float
-        Values of `COLUMNS`: the mode, and PX4's estimate of the position in the world (m) and of
-        roll, pitch and yaw (rad; axes forward, left, up in east, north, up).
+        Values of `COLUMNS`: the mode, and the estimates of PX4. These are the position in the world
+        (m), and roll, pitch and yaw (rad) of forward, left, up axes in east, north, up axes.
     """
 
     def __init__(self) -> None:
@@ -38,19 +38,19 @@ class Telemetry:
         self.columns: Dict[str, float] = dict.fromkeys(COLUMNS, math.nan)
 
     def restart(self) -> None:
-        """Forget the estimates, so that a flight does not depend on the phase before it."""
+        """Discard the estimates, so that a flight does not depend on the phase before it."""
         self.columns = dict.fromkeys(COLUMNS, math.nan)
-        self._set(mode=OFFBOARD)  # in which the flight begins
+        self._set(mode=OFFBOARD)  # mode at the start of the flight
 
     def take(self, message: Any, origin: np.ndarray) -> None:
-        """Take a message.
+        """Process a message.
 
         Parameters
         ----------
         message
             Message of pymavlink.
         origin : ndarray (3,)
-            Position at which PX4 has started its estimate, world axes, m.
+            Position at which PX4 started its estimator, world axes, m.
         """
         kind = message.get_type()
         if kind == "HEARTBEAT" and message.get_srcComponent() == _AUTOPILOT:
