@@ -79,19 +79,18 @@ example:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status.
+    """Run the command line, and return its exit status.
 
     Parameters
     ----------
     argv
-        Arguments after the command's name (default: those of the process).
+        Arguments after the command name (default: those of the process).
 
     Returns
     -------
     int
-        0 for success, 2 for bad input, 3 for a failed flight. Errors are one line ``error: ...``
-        on standard error. 130, 143 and 129 mean SIGINT, SIGTERM and SIGHUP, with the data so far
-        kept.
+        0 for success, 2 for bad input, 3 for a failed flight. An error is a line ``error: ...`` on
+        standard error. 130, 143 and 129 mean SIGINT, SIGTERM and SIGHUP; the data so far are kept.
     """
     terminal.prepare_streams()
     try:
@@ -125,7 +124,7 @@ def _run_command(argv: Sequence[str] | None) -> int:
         terminal.print_message("error: out of memory. Shorten the log with --log-every.")
         return 2
     except BrokenPipeError:
-        # The reader, such as `head`, needs no more.
+        # The reader, such as `head`, needs no more output.
         terminal.discard_output()
     except OSError as error:
         terminal.discard_output()
@@ -136,7 +135,7 @@ def _run_command(argv: Sequence[str] | None) -> int:
 
 
 def make_parser() -> argparse.ArgumentParser:
-    """Make the parser of all commands."""
+    """Make the parser for all commands."""
     parser = Parser(
         prog="quadcore",
         description="\n\n".join(textwrap.fill(part, 78) for part in _DESCRIPTION),

@@ -43,7 +43,7 @@ def register(commands: Any) -> None:
 
 
 def run_action(arguments: argparse.Namespace) -> None:
-    """List or check."""
+    """List the bridges, check an autopilot, or replay a session."""
     if arguments.what == "list":
         if arguments.file is not None:
             raise InputError(f"autopilot list takes no file. Leave out {arguments.file}.")
@@ -66,7 +66,7 @@ def _print_stacks() -> None:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    """Print the map of the rotors and what is wrong."""
+    """Print the assignment of the rotors, and the problems of an autopilot."""
     from ..autopilots.check import check_autopilot
     from ..autopilots.stacks import read_autopilot
     from ..simulation.simulation import Simulation

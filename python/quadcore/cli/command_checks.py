@@ -1,4 +1,4 @@
-"""Checks of commands that are valid, but are probably a mistake."""
+"""Checks for commands that are valid but probably a mistake."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..support.warning import warn
 
 
 def warn_of_commands(simulation: Simulation, plan: FlightPlan) -> None:
-    """Warn of a flight without commands, or with all rotors turning the same way."""
+    """Warn about a flight without commands, or with all rotors turning in the same direction."""
     topic = simulation.topics.get(simulation.command_topic)
     if plan.controller is not None or topic is None or topic.writer is not None:
         return
@@ -39,7 +39,7 @@ def warn_of_commands(simulation: Simulation, plan: FlightPlan) -> None:
 
 
 def refuse_log_every(arguments: argparse.Namespace, what: str) -> None:
-    """Raise `InputError` if --log-every was given to a command that writes no log."""
+    """Raise `InputError` if --log-every is given to a command that writes no log."""
     if arguments.log_every is not None:
         raise InputError(f"{what} writes no log. Leave --log-every out.")
 
@@ -49,12 +49,12 @@ def _turn_one_way(speeds: np.ndarray) -> bool:
 
 
 def warn_of_yaw_zero(simulation: Simulation, error: float) -> None:
-    """Warn if a vehicle far from its reference has a zero in the right half-plane in yaw.
+    """Warn if a vehicle has a large tracking error and a right-half-plane zero in yaw.
 
     Parameters
     ----------
     simulation
-        Vehicle.
+        Simulation of the vehicle.
     error
         Maximum tracking error, m.
     """

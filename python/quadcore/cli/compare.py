@@ -36,8 +36,8 @@ from .interrupted_output import keep_partial_output
 from .options_file import make_plan
 from .parser import add_command, find_group
 
-_ROWS = 40  # on the terminal
-_FEW = 20  # logs that --out writes without --logs
+_ROWS = 40  # maximum number of rows on the terminal
+_FEW = 20  # maximum number of logs that --out writes without --logs
 
 
 def register(commands: Any) -> None:
@@ -71,7 +71,7 @@ def register(commands: Any) -> None:
 
 
 def compare_models(arguments: argparse.Namespace) -> None:
-    """Print how the models differ, simulate them, and print how the flights differ."""
+    """Print the differences between the models, simulate them, and compare the flights."""
     arguments, plan = make_plan(arguments, _make_plan)
     if arguments.against is not None and arguments.against > len(plan):
         raise InputError(
@@ -146,7 +146,7 @@ def _warn_of_commands(plan: Plan) -> None:
     first = plan.make_plan(plan[0])
     try:
         simulation = first.simulation()
-    except QuadcoreError:  # the table gives the reason
+    except QuadcoreError:  # the table contains the reason
         return
     warn_of_commands(simulation, first)
 
@@ -156,7 +156,7 @@ def _writes_logs(arguments: argparse.Namespace, plan: Plan) -> bool:
 
 
 def _make_keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
-    """Make the function that writes each log and keeps some of them for plots."""
+    """Make the function that writes each log, and keeps some logs for plots."""
     out = arguments.out
     if out is None:
         return None

@@ -32,7 +32,7 @@ def print_code(arguments: argparse.Namespace) -> None:
     with require_package("completion", "argcomplete", "completion"):
         from argcomplete.shell_integration import shellcode
 
-    # The code of argcomplete for bash serves zsh, too.
+    # The bash code of argcomplete also works in zsh.
     shell = "fish" if arguments.shell == "fish" else "bash"
     if arguments.shell == "zsh":
         print("autoload -U +X compinit && compinit")
@@ -40,7 +40,7 @@ def print_code(arguments: argparse.Namespace) -> None:
 
 
 def complete(parser: argparse.ArgumentParser) -> None:
-    """Answer the shell that asks for completions, and end the process."""
+    """Answer a completion request of the shell, and end the process."""
     with require_package("completion", "argcomplete", "completion"):
         import argcomplete
 

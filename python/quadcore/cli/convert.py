@@ -39,7 +39,7 @@ def register(commands: Any) -> None:
 
 
 def convert_log(arguments: argparse.Namespace) -> None:
-    """Read one log, write the other."""
+    """Read a log, and write it in another format."""
     check_log_path(arguments.target)
     remove_leftovers(arguments.target)
     Log.of_file(arguments.source, arguments.mapping).to_file(arguments.target)

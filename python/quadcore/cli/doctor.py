@@ -23,10 +23,10 @@ from .parser import add_command
 _OK, _ABSENT, _WRONG = "ok", "absent", "wrong"
 
 _NEEDED = ("numpy", "scipy", "rich", "xacro", "rospkg", "yaml", "jinja2")
-"""Modules that quadcore cannot do without."""
+"""Modules that quadcore requires."""
 
 _PACKAGES = {"collada": "pycollada", "yaml": "pyyaml"}
-"""Names of packages that differ from those of their modules."""
+"""Package names that differ from the module names."""
 
 _OPTIONAL = {
     "rosbags": ("bag", "reads and writes .bag files"),
@@ -46,18 +46,18 @@ _OPTIONAL = {
     "onnxruntime": ("onnx", "runs neural networks in .onnx files as controllers"),
     "argcomplete": ("completion", "completes commands in a shell"),
 }
-"""Modules of the extras, with what they are for."""
+"""Modules of the extras, with their extra and their use."""
 
-_COMPILER = 9  # major version of g++
+_COMPILER = 9  # minimum major version of g++
 
 
 class Finding(NamedTuple):
-    """The result of one check."""
+    """Result of one check."""
 
     what: str
     state: str
     text: str
-    """Version and place, or what is wrong and the remedy."""
+    """Version and location, or the problem and the remedy."""
 
 
 def register(commands: Any) -> None:
@@ -73,7 +73,7 @@ def register(commands: Any) -> None:
 
 
 def check_installation(arguments: argparse.Namespace) -> None:
-    """Print every finding; raise `InputError` if something is wrong."""
+    """Print every finding; raise `InputError` if there is a problem."""
     findings = [finding for check in _CHECKS for finding in check()]
     if arguments.json:
         terminal.print_json([finding._asdict() for finding in findings])
@@ -133,7 +133,7 @@ def _try_import(module: str, state: str, remedy: str) -> Finding:
         if error.name != module:
             return Finding(module, _WRONG, f"{error}. {remedy}")
         return Finding(module, state, remedy)
-    except Exception as error:  # an installation that is damaged, or for another numpy
+    except Exception as error:  # a damaged installation, or one for another version of NumPy
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         return Finding(module, _WRONG, f"{reason}. Install it again: {remedy}")
     place = (getattr(found, "__path__", None) or [""])[0]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..studies.evaluate.evaluate import Evaluation
     from ..studies.evaluate.plan import Plan
 
-_ROWS = 40  # on the terminal
+_ROWS = 40  # maximum number of rows on the terminal
 
 
 def register(commands: Any) -> None:
@@ -95,7 +95,7 @@ def _make_plan(arguments: argparse.Namespace) -> Plan:
 
 
 def show(evaluation: Evaluation, files: list[Path], notes: Sequence[str] = ()) -> None:
-    """Print the tables and notes of an evaluation, and the names of its files."""
+    """Print the tables and notes of an evaluation, and the paths of its files."""
     from ..studies.evaluate.output import list_notes, list_unstable_axes, summarise
     from ..studies.evaluate.summary_table import choose_columns, format_rows
 
@@ -147,5 +147,5 @@ def _make_loop_table(evaluation: Evaluation) -> Any:
 
 
 def name_flight(row: dict[str, Any]) -> str:
-    """Name a flight by its row of the table."""
+    """Name the flight in a row of the table."""
     return f"{row['controller']} on {row['reference']} in {row['engine']}, seed {row['seed']}"

@@ -31,7 +31,7 @@ def register(commands: Any) -> None:
 
 
 def copy_examples(arguments: argparse.Namespace) -> None:
-    """Copy the folders; nothing is overwritten."""
+    """Copy the folders without overwriting files."""
     for name in _FOLDERS:
         if not (resources.find_root() / name).is_dir():
             raise InputError(

@@ -1,4 +1,4 @@
-"""The error with which a command ends when flights failed."""
+"""Errors with which commands report failed flights."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ def report_failures(failures: Sequence[str], refused: int, name: Callable[[int],
     Parameters
     ----------
     failures
-        Reason of each failed flight, "" for the others.
+        Failure of each flight; "" for success.
     refused
-        Number of flights that bad input prevented.
+        Number of flights that did not run because of bad input.
     name
-        Names a flight, by its position.
+        Function that returns the name of a flight from its index.
     """
     failed = [i for i, failure in enumerate(failures) if failure]
     if not failed:

@@ -185,7 +185,7 @@ def _fit_log(arguments: argparse.Namespace, out: Path, folder: Optional[Path]) -
 
 
 def _find_model_file(arguments: argparse.Namespace, folder: Optional[Path]) -> Path:
-    """Return the file of the fitted model: -o, an --out that ends in .urdf, or in the folder."""
+    """Return the path of the fitted model: -o, an --out that ends in .urdf, or a file in --out."""
     out: Optional[Path] = arguments.o
     if out is not None and arguments.out is not None and folder is None:
         raise InputError(f"-o {out}, --out {arguments.out}: name two models. Give one of them.")

@@ -13,11 +13,11 @@ from ..support.output_files import atomic_write, encode_text
 from . import reading, terminal
 
 DAMAGE = "rotors.factor"
-"""Name of the free parameter that is the thrust of each rotor."""
+"""Name of the free parameter for the thrust factors of the rotors."""
 
 _FACTORS = "rotorFactors"
 _OF_LOGS = ("commands", "sensed", "channels", "shift", "horizon", "engine", "dt")
-"""Options of a fit of one log of quadcore."""
+"""Options that apply only to a fit of a single log of quadcore."""
 
 
 def fit_real_flights(
@@ -26,7 +26,7 @@ def fit_real_flights(
     folder: Optional[Path],
     bounds: Dict[str, Tuple[float, float]],
 ) -> None:
-    """Fit a model to recordings, judge it, and write it with its map of inputs.
+    """Fit a model to recordings, judge it, and write it with its input map.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ def fit_real_flights(
     out
         File of the fitted model.
     folder
-        Folder of the page, if any.
+        Folder for the page; None: no page.
     bounds
-        Minimum and maximum value by name.
+        Minimum and maximum value by parameter name.
     """
     from ..studies.fit.input_file import name_input_file, write_inputs
     from ..studies.fit.output import write_recorded_fit
@@ -154,7 +154,7 @@ def fit_damage(arguments: argparse.Namespace, out: Path, folder: Optional[Path])
 
 
 def refuse_options(arguments: argparse.Namespace, names: Sequence[str], what: str) -> None:
-    """Refuse options without effect on a fit; the engine of all studies is allowed."""
+    """Raise `InputError` for options that have no effect on a fit."""
     for name in names:
         value = getattr(arguments, name)
         if value not in (None, [], False) and (name, value) != ("engine", STUDY_ENGINE):

@@ -1,4 +1,4 @@
-"""Tables on recordings of real flights."""
+"""Tables about recordings of real flights."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def show_flights(flights: Sequence[PreparedFlight]) -> None:
-    """Print what was aligned and left out of each recording."""
+    """Print the alignment and the removed samples of each recording."""
     console = terminal.make_console()
     table = terminal.make_table("recording", "in the air", "topic", "lag", "left out")
     for flight in flights:
@@ -44,7 +44,7 @@ def show_flights(flights: Sequence[PreparedFlight]) -> None:
 
 
 def show_fit(fit: RecordedFit) -> None:
-    """Print parameters with deviations, trims, and unidentified parameters."""
+    """Print the parameters with their deviations, the trims, and unidentified parameters."""
     console = terminal.make_console()
     table = terminal.make_table("parameter", "start", "fitted", "std dev", "unit", numbers=True)
     found = fit.found
@@ -63,7 +63,7 @@ def show_fit(fit: RecordedFit) -> None:
 
 
 def show_judgement(judgement: Judgement) -> None:
-    """Print the errors over the horizon."""
+    """Print the prediction errors over the horizon."""
     console = terminal.make_console()
     heads = [f"{horizon:g} s" for horizon in HORIZONS]
     table = terminal.make_table("model", "error (RMS)", "unit", *heads)
@@ -75,7 +75,7 @@ def show_judgement(judgement: Judgement) -> None:
 
 
 def show_replays(replays: Sequence[Replay]) -> None:
-    """Print the distance of replays and set-points to the real flights."""
+    """Print the distances of replays and set-points from the real flights."""
     console = terminal.make_console()
     table = terminal.make_table("recording", "distance to the real flight", "RMS", "max", "unit")
     for replay in replays:

@@ -22,10 +22,10 @@ from . import options, reading, terminal
 from .list_names import list_entries, print_entries
 from .parser import add_command, find_group
 
-_LONGEST = 100  # characters of a line
+_LONGEST = 100  # maximum number of characters in a line
 
 _FACTS = ("value", "unit", "default", "origin", "range", "meaning", "equation")
-"""Attributes of a parameter."""
+"""Attributes of a parameter that --json prints."""
 
 
 def register(commands: Any) -> None:
@@ -59,7 +59,7 @@ def register(commands: Any) -> None:
 
 
 def show_model(arguments: argparse.Namespace) -> None:
-    """Print the model with all changes that the options make."""
+    """Print the model with the changes that the options define."""
     if arguments.model is None:
         return _show_models(arguments)
     simulation = Simulation(**reading.read_model_arguments(arguments))
@@ -120,12 +120,12 @@ def _print(simulation: Simulation) -> None:
         if console.is_terminal:
             text = _explain(plugin, min(console.width, _LONGEST))
             console.print(text, "", soft_wrap=True, sep="\n")
-        else:  # a line for each parameter, which `grep` finds
+        else:  # one line per parameter, which `grep` can find
             console.print(_make_parameter_table(plugin), "")
 
 
 def _describe(simulation: Simulation) -> Dict[str, Any]:
-    """Describe the model in plain values."""
+    """Describe the model as plain values."""
     model = simulation.model
     yaw_zero = find_yaw_zero(simulation)
     return {
@@ -203,10 +203,10 @@ def _make_rotor_table(simulation: Simulation) -> Table:
 
 
 def _explain(plugin: Any, width: int) -> str:
-    """Explain each parameter in a few lines for a terminal; paths stay whole."""
+    """Explain each parameter in a few lines for a terminal, without breaking paths."""
     lines = []
     for parameter in plugin.parameters:
-        # A unit belongs to a number: not to "off", but to the numbers that are allowed.
+        # A unit belongs to numbers: if the value is text such as "off", show it with the range.
         is_number = parse_number(parameter.value.partition(" ")[0]) is not None
         value, allowed = f"{parameter.value} {parameter.unit}", parameter.range
         if not is_number:
@@ -247,4 +247,4 @@ def _shorten_origin(origin: str) -> str:
 
 
 def _join_numbers(values: Any) -> str:
-    return " ".join(f"{value + 0.0:.9g}" for value in values)  # -0 is 0
+    return " ".join(f"{value + 0.0:.9g}" for value in values)  # adding 0.0 turns -0 into 0

@@ -1,4 +1,4 @@
-"""Keeps the results of an interrupted command."""
+"""Output of the partial results of an interrupted command."""
 
 from __future__ import annotations
 
@@ -14,18 +14,19 @@ from . import terminal
 def keep_partial_output(
     attribute: str, out: Path | None, write: Callable[[Any], Any], what: str = "results so far"
 ) -> Iterator[None]:
-    """Write the results that an interrupt of the block carries, and print where they are.
+    """Write the results in an interrupt of the block, and print their location.
 
     Parameters
     ----------
     attribute
-        Attribute of the KeyboardInterrupt that holds the results. Without it nothing is written.
+        Attribute of the KeyboardInterrupt that contains the results. Without it, nothing is
+        written.
     out
-        Where the results are written; None: nowhere.
+        Location of the results. None: nothing is written.
     write
-        Writes the results.
+        Function that writes the results.
     what
-        Names the results in the message.
+        Name of the results in the message.
     """
     try:
         yield

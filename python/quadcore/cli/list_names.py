@@ -1,4 +1,4 @@
-"""``quadcore list``: names that other commands take."""
+"""``quadcore list``: names that other commands accept."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import options, terminal
 from .parser import add_command
 
 _FOLDERS = {"models": "urdf", "worlds": "worlds", "scenarios": "config/scenarios"}
-"""Folders of the files that come with quadcore."""
+"""Folders of the built-in files."""
 
 KINDS = (*_FOLDERS, "controllers", "references", "engines")
 
@@ -35,7 +35,7 @@ def register(commands: Any) -> None:
 
 
 def print_names(arguments: argparse.Namespace) -> None:
-    """Print the names, each with its meaning or its file."""
+    """Print the names with their meanings or files."""
     entries = list_entries(arguments.kind)
     if arguments.json:
         terminal.print_json(entries)
@@ -52,7 +52,7 @@ def print_entries(entries: List[Dict[str, Any]]) -> None:
 
 
 def list_entries(kind: str) -> List[Dict[str, Any]]:
-    """List the names of a kind with all that is known of them."""
+    """List the entries of a kind with all their properties."""
     if kind in _FOLDERS:
         files = resources.list_shipped(_FOLDERS[kind])
         found: List[Dict[str, Any]] = [

@@ -80,7 +80,7 @@ def add_options(
     kind: Type[Options] = FlightOptions,
     **defaults: Any,
 ) -> None:
-    """Add options by their Python names, or all of a kind, some with other defaults."""
+    """Add the named options, or all options of `kind`; `defaults` replaces default values."""
     for each in fields(kind):
         about: OptionInfo = each.metadata["about"]
         if not about.flag or (names and each.name not in names):
@@ -107,7 +107,7 @@ _COMPLETIONS = {
     "world": list(resources.list_shipped("worlds")),
     "scenario": [NONE, *resources.list_shipped("config/scenarios")],
 }
-"""Names of files that come with quadcore, by option."""
+"""Names of built-in files by option."""
 
 
 def add_model(
@@ -116,7 +116,7 @@ def add_model(
     default: str | None = None,
     changes: bool = True,
 ) -> None:
-    """Add MODEL and, if `changes` is true, the options that change it."""
+    """Add MODEL and, if `changes` is true, the options that change the model."""
     model = parser.add_argument(
         "model",
         metavar="MODEL",
@@ -134,7 +134,7 @@ def add_engine(
     default: str | list[str],
     choices: Sequence[tuple[str, str]] = tuple(engines()),
 ) -> None:
-    """Add the option that names the engine, or several if the default is a list."""
+    """Add the option for the engine, or for several engines if the default is a list."""
     names = [name for name, _ in choices]
     kind: dict[str, Any] = {"choices": names}
     if isinstance(default, list):
@@ -156,7 +156,7 @@ def add_flight(
     choices: Sequence[tuple[str, str]] = tuple(engines()),
     has_end: bool = True,
 ) -> None:
-    """Add the options that all commands with single flights share."""
+    """Add the options that all commands for single flights share."""
     add_engine(parser, engine, choices)
     timed = ("duration",) if has_end else ()
     add_options(parser, "world", "dt", *timed, "seed", "spawn", "log_every", log_every=log_every)
@@ -183,7 +183,7 @@ def add_study(
 
 
 def add_combined(parser: argparse.ArgumentParser) -> None:
-    """Add the options of which `evaluate` and `sweep` combine all values."""
+    """Add the options with the values that `evaluate` and `sweep` combine."""
     parser.add_argument(
         "file", metavar="FILE.yaml", nargs="?", type=Path, help="same as --options FILE.yaml"
     )
@@ -207,7 +207,7 @@ def add_combined(parser: argparse.ArgumentParser) -> None:
 
 
 def add_controllers(parser: argparse.ArgumentParser, meaning: str) -> None:
-    """Add the option of several controllers."""
+    """Add the option for several controllers."""
     action = find_group(parser, CONTROLLER).add_argument(
         "--controller",
         metavar="A,B",
@@ -218,7 +218,7 @@ def add_controllers(parser: argparse.ArgumentParser, meaning: str) -> None:
 
 
 def add_model_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option of one vehicle."""
+    """Add the option for a single vehicle."""
     model = find_group(parser, VEHICLE).add_argument(
         "--model", metavar="MODEL", default="quadrotor", help=f"{MODEL} (default: quadrotor)"
     )
@@ -232,7 +232,7 @@ _CONTROLLERS = (
 
 
 def add_controller(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a flight in closed loop."""
+    """Add the options for a closed-loop flight."""
     group = find_group(parser, CONTROLLER)
     controller = group.add_argument(
         "--controller",
@@ -251,7 +251,7 @@ def add_controller(parser: argparse.ArgumentParser) -> None:
 
 
 def add_commands(parser: argparse.ArgumentParser, default: str = "") -> None:
-    """Add the option of a flight in open loop; `default` describes a flight without it."""
+    """Add the option for an open-loop flight; `default` describes flights without it."""
     find_group(parser, FLIGHT).add_argument(
         "--commands",
         metavar="FILE",
@@ -264,7 +264,7 @@ _VALUES = "A,B,C or FIRST:LAST:COUNT or log:FIRST:LAST:COUNT"
 
 
 def add_vary(parser: argparse.ArgumentParser, more: str = "", values: str = "") -> None:
-    """Add the option that spans a grid; `more` lists further axes, `values` further values."""
+    """Add the option for a grid; `more` describes other axes, `values` other kinds of values."""
     find_group(parser, STUDY).add_argument(
         "--vary",
         metavar="PLUGIN.TAG=VALUES",
@@ -283,7 +283,7 @@ def add_out(
     plots: str = "plots",
     default: Path | None = None,
 ) -> None:
-    """Add the options that name the folder of the results and leave plots out."""
+    """Add the options for the folder of the results and for omitting plots."""
     group = find_group(parser, OUTPUT)
     written = "" if default is None else f" (default: {default})"
     group.add_argument(
@@ -294,7 +294,7 @@ def add_out(
 
 
 def add_format(parser: argparse.ArgumentParser) -> None:
-    """Add the option that chooses the formats of plot files."""
+    """Add the option for the formats of plot files."""
     find_group(parser, OUTPUT).add_argument(
         "--format",
         metavar="A,B",
@@ -306,7 +306,7 @@ def add_format(parser: argparse.ArgumentParser) -> None:
 
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:
-    """Add the option that leaves only warnings and errors on the terminal."""
+    """Add the option that suppresses everything but warnings and errors."""
     find_group(parser, OUTPUT).add_argument(
         "--quiet", action="store_true", help="print warnings and errors only"
     )

@@ -1,4 +1,4 @@
-"""Options of a command, read from a YAML file."""
+"""Options of a command from a YAML file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..support.yaml_nodes import find_line, read_pairs, read_root, read_scalar
 from .parser import end_sentence
 
 _SIGNS = {"set": "=", "vary": "=", "xacro": ":="}
-"""Options that give values to keys, with the sign between them."""
+"""Options that assign values to keys, with their assignment sign."""
 
 _PAIRS = "options as KEY: VALUE"
 
@@ -26,7 +26,7 @@ Plan = TypeVar("Plan")
 def make_plan(
     arguments: argparse.Namespace, plan: Callable[[argparse.Namespace], Plan]
 ) -> tuple[argparse.Namespace, Plan]:
-    """Make a plan of arguments and, beneath them, the options of the file that they name."""
+    """Make a plan from arguments and the options file that they name, if any."""
     path = getattr(arguments, "file", None) or arguments.options
     if path is None:
         return arguments, plan(arguments)
@@ -38,19 +38,19 @@ def make_plan(
 
 
 class OptionsFile:
-    """The options of a file.
+    """Options in a file.
 
     Parameters
     ----------
     path
-        The file.
+        Path of the file.
     parser
-        The parser of the command.
+        Parser of the command.
 
     Raises
     ------
     InputError
-        If the file is wrong, with the line.
+        If the file is invalid; the message contains the line.
     """
 
     def __init__(self, path: Path, parser: argparse.ArgumentParser) -> None:
@@ -70,10 +70,10 @@ class OptionsFile:
                 self._store(action, text, line)
 
     def put_beneath(self, arguments: argparse.Namespace) -> argparse.Namespace:
-        """Put the file's options beneath those of the command line, which win.
+        """Merge the options of the file with those of the command line, which take precedence.
 
-        Options with keys are merged key by key. Of other options that may be repeated, such as
-        --ignore, all values are kept.
+        Options with keys are merged key by key. Other repeatable options, such as --ignore, keep
+        all values.
         """
         for name in _SIGNS:
             mine = {key for key, _ in getattr(arguments, name)}
@@ -84,7 +84,7 @@ class OptionsFile:
 
     @contextmanager
     def locate_errors(self) -> Iterator[None]:
-        """Add file and line to an error of the block that names a value of the file."""
+        """Add file and line to an error in the block that names a value of the file."""
         try:
             yield
         except InputError as error:
@@ -114,7 +114,7 @@ class OptionsFile:
     def _write_values(
         self, name: str, action: argparse.Action, node: yaml.Node
     ) -> Iterator[tuple[str, int]]:
-        """Write each value of an option as on the command line, with its line in the file."""
+        """Yield each value of an option as text for the command line, with its line in the file."""
         if action.nargs == 0:
             if self._write_value(name, node) not in ("true", "false"):
                 raise InputError(f"{self._path}:{find_line(node)}: {name}: write true or false")
@@ -137,11 +137,11 @@ class OptionsFile:
 
     def _write_value(self, name: str, node: yaml.Node) -> str:
         written = read_scalar(self._path, name, node)
-        if not written[:1].isdigit() and written not in ("true", "false"):  # these name nothing
+        if not written[:1].isdigit() and written not in ("true", "false"):  # identify nothing
             self._lines[written] = find_line(node)
         return written
 
 
 def _may_repeat(action: argparse.Action) -> bool:
-    """Whether an option may be repeated, and all its values are kept."""
+    """Return whether an option is repeatable, which keeps all its values."""
     return isinstance(action, argparse._AppendAction)

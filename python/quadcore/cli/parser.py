@@ -1,4 +1,4 @@
-"""The argument parser of ``quadcore`` and its commands."""
+"""Argument parser of ``quadcore`` and its commands."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from ..support.parameters import suggest
 
 
 def end_sentence(message: str) -> str:
-    """Add a full stop unless the message ends with one, or with a question mark."""
+    """Add a full stop unless the message ends with a full stop or a question mark."""
     return message if message.endswith((".", "?")) else f"{message}."
 
 
 class Parser(argparse.ArgumentParser):
-    """Raises `InputError` for a wrong option, as for any other wrong input."""
+    """Argument parser that raises `InputError` for invalid options."""
 
     def error(self, message: str) -> NoReturn:  # noqa: D102
         raise InputError(f"{end_sentence(message)} See {self.prog} --help.")
 
     def parse_known_args(self, *given: Any, **named: Any) -> Any:  # type: ignore[override]  # noqa: D102
         read, unknown = super().parse_known_args(*given, **named)
-        if unknown:  # reported by the command, not by the parser of all commands
+        if unknown:  # the command reports them, not the main parser
             options = [word.partition("=")[0] for word in unknown if word.startswith("-")]
             near = suggest(options[0], list(self._option_string_actions)) if options else ""
             self.error(f"unrecognized arguments: {' '.join(unknown)}.{near}")
@@ -40,7 +40,7 @@ class Parser(argparse.ArgumentParser):
             raise argparse.ArgumentError(action, f"{error.message}.{near}") from None
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:  # noqa: D102
-        sys.stdout.flush()  # reports a full disk while that is still possible
+        sys.stdout.flush()  # report a full disk while this is still possible
         super().exit(status, message)
 
 
@@ -56,11 +56,11 @@ def add_command(
     name
         Name of the command.
     summary
-        One sentence.
+        Summary in one sentence.
     action
-        Called with the parsed arguments.
+        Function called with the parsed arguments.
     example
-        One command line or more, with which the help ends.
+        One or more command lines for the end of the help.
     """
     lines = textwrap.dedent(example).strip()
     heading = "examples" if "\nquadcore" in lines else "example"
@@ -72,7 +72,7 @@ def add_command(
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    # "-1,0,10" is a value; argparse takes it for an option unless it looks like a number.
+    # "-1,0,10" is a value, but argparse treats it as an option unless it looks like a number.
     parser._negative_number_matcher = re.compile(r"^-[\d.]")
     parser.set_defaults(action=action)
     for title in GROUPS:
@@ -81,10 +81,10 @@ def add_command(
 
 
 def find_group(parser: argparse.ArgumentParser, title: str) -> Any:
-    """Return the group of a command's options that has a title."""
+    """Return the option group of a command with this title."""
     return next(group for group in parser._action_groups if group.title == title)
 
 
 def complete_from(action: argparse.Action, names: Sequence[str]) -> None:
-    """Let a shell complete an argument by names; files are completed if none of these fits."""
+    """Let a shell complete an argument from names; if no name matches, it completes files."""
     action.completer = lambda **_: list(names)  # type: ignore[attr-defined]

@@ -61,7 +61,7 @@ def register(commands: Any) -> None:
 
 
 def play_logs(arguments: argparse.Namespace) -> None:
-    """Read the logs, and write what was asked for, or show the page in the browser."""
+    """Read the logs, and write the requested files or show the page in the browser."""
     from ..report.player import make_page  # jinja2 is slow to import
 
     played = find_flights(arguments)

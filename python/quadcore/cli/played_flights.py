@@ -1,4 +1,4 @@
-"""The flights that ``quadcore play`` and ``quadcore plot`` read: logs, and folders of studies."""
+"""Flights for ``quadcore play`` and ``quadcore plot``, from logs and folders of studies."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LOG = "log.csv"
 
 
 class PlayedFlight(NamedTuple):
-    """A log to read, and what ``run.json`` lists about it."""
+    """Log to read, and its entry in ``run.json``."""
 
     name: str
     log: Path
@@ -35,7 +35,7 @@ class PlayedFlight(NamedTuple):
 
 
 def add_logs(parser: argparse.ArgumentParser) -> None:
-    """Add the logs, and the option that names them."""
+    """Add the arguments for logs and their names."""
     parser.add_argument(
         "logs",
         metavar="LOG",
@@ -55,7 +55,7 @@ def add_logs(parser: argparse.ArgumentParser) -> None:
 
 
 def find_flights(arguments: argparse.Namespace) -> List[PlayedFlight]:
-    """Find the flights that `add_logs` asked for, and name each."""
+    """Find and name the flights that the arguments of `add_logs` select."""
     found = [flight for path in arguments.logs for flight in _find_in(path)]
     names = arguments.names
     if names is None:
@@ -70,21 +70,21 @@ def find_flights(arguments: argparse.Namespace) -> List[PlayedFlight]:
 def read_player_flight(
     played: PlayedFlight, mapping: Optional[Path], model: Optional[str]
 ) -> PlayerFlight:
-    """Read a log with its vehicle.
+    """Read a log and its vehicle.
 
     Parameters
     ----------
     played
-        Flight of `find_flights`.
+        Flight from `find_flights`.
     mapping
-        Mapping of a recording.
+        Mapping for a recording.
     model
-        Model that gives the shapes; None: that of ``run.json``, if any.
+        Model for the shapes of the vehicle. None: that of ``run.json``, if any.
 
     Raises
     ------
     InputError
-        If a file is wrong, or the log is a flight of another vehicle than the model.
+        If a file is invalid, or the log is from a vehicle other than the model.
     """
     from ..report.player import PlayerFlight  # jinja2 is slow to import
 
@@ -97,7 +97,7 @@ def read_player_flight(
 
 
 def find_world(flights: Sequence[PlayedFlight]) -> DrawnWorld:
-    """Return the ground and the obstacles that ``run.json`` lists."""
+    """Return the ground and the obstacles listed in ``run.json``."""
     return join_worlds([flight.listed.world for flight in flights if flight.listed is not None])
 
 
@@ -115,7 +115,7 @@ def _choose_vehicle(played: PlayedFlight, model: Optional[str]) -> Optional[Draw
 
 
 def _find_in(path: Path) -> List[Tuple[Path, Optional[ListedFlight]]]:
-    """Find the logs of a folder, and what is listed about them; a file is one log."""
+    """Find the logs in a folder with their entries; a file is a single log."""
     if path.is_dir() and not is_ros2(path):
         listed = [flight for flight in list_flights(path) if is_file(flight.log)]
         if listed:
@@ -136,7 +136,7 @@ def _find_in(path: Path) -> List[Tuple[Path, Optional[ListedFlight]]]:
 def _choose_names(
     found: Sequence[Tuple[Path, Optional[ListedFlight]]], given: Sequence[Path]
 ) -> List[str]:
-    """Use the listed names of folders with several flights if all differ, else the paths."""
+    """Return the listed names if there are several per folder and all differ, else the paths."""
     names = [flight.name for _, flight in found if flight is not None]
     if len(names) == len(found) > len(given) and len(set(names)) == len(names):
         return names
@@ -144,14 +144,14 @@ def _choose_names(
 
 
 def _name_by_path(logs: Sequence[Path], given: Sequence[Path]) -> List[str]:
-    """Name logs by the part in which their paths differ: out/ode/log.csv, out/eigen/log.csv."""
+    """Name logs by the differing part of their paths, as in out/ode/log.csv, out/eigen/log.csv."""
     if len(logs) == 1:
         return [given[0].resolve().name if given[0] != logs[0] else logs[0].stem]
     parts: List[Tuple[str, ...]] = [log.with_suffix("").parts for log in logs]
     if len(set(logs)) < len(logs):
         twice = next(log for i, log in enumerate(logs) if log in logs[:i])
         raise InputError(f"{twice}: is named twice. Name each log once.")
-    if len(set(parts)) < len(parts):  # a.csv and a.mat
+    if len(set(parts)) < len(parts):  # such as a.csv and a.mat
         return [str(log) for log in logs]
     while len({path[-1] for path in parts}) == 1 and min(map(len, parts)) > 1:
         parts = [path[:-1] for path in parts]

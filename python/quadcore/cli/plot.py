@@ -17,7 +17,7 @@ from .parser import add_command, find_group
 from .played_flights import add_logs, find_flights
 
 _OUT = Path("out/plot")
-_ROWS = 20_000  # of each of several logs; a plot shows no more
+_ROWS = 20_000  # maximum number of rows of each of several logs; a plot cannot show more
 
 
 def register(commands: Any) -> None:
@@ -45,7 +45,7 @@ def register(commands: Any) -> None:
 
 
 def plot_logs(arguments: argparse.Namespace) -> None:
-    """Read the logs and write the plots."""
+    """Read the logs, and write the plots."""
     played = find_flights(arguments)
     names = [flight.name for flight in played]
     logs = [Log.of_file(flight.log, arguments.mapping) for flight in played]

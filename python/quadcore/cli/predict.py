@@ -58,7 +58,7 @@ def register(commands: Any) -> None:
 
 
 def add_force(parser: argparse.ArgumentParser) -> None:
-    """Add the option that accepts a model that is worse than a baseline."""
+    """Add the option to accept a model that is worse than a baseline."""
     find_group(parser, STUDY).add_argument(
         "--force",
         action="store_true",
@@ -67,7 +67,7 @@ def add_force(parser: argparse.ArgumentParser) -> None:
 
 
 def predict(arguments: argparse.Namespace) -> None:
-    """Predict, print the errors, and write them."""
+    """Predict recordings, and print and write the errors."""
     from ..studies.fit.output import FILES
 
     with output_folder(arguments.out, FILES, DOCUMENT):

@@ -1,4 +1,4 @@
-"""Options, models, flights and axes from parsed arguments."""
+"""Conversion of parsed arguments to options, models, flights and axes."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def read_model_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def make_flight_plan(arguments: argparse.Namespace) -> FlightPlan:
-    """Describe a flight; without --duration it has no end."""
+    """Make the plan of a flight; without --duration it has no end."""
     given = vars(arguments)
     plan = FlightPlan.of(
         **read_model_arguments(arguments),
@@ -56,7 +56,7 @@ def make_flight_plan(arguments: argparse.Namespace) -> FlightPlan:
 
 
 def read_control(arguments: argparse.Namespace) -> ControlSetup:
-    """Make the controller and the reference, if there are any."""
+    """Make the controller and the reference, or an empty setup."""
     names = ("controller", "reference", "controller_rate", "delay")
     given = {name: getattr(arguments, name) for name in names}
     if arguments.controller is None:
@@ -71,7 +71,7 @@ def read_control(arguments: argparse.Namespace) -> ControlSetup:
 
 
 def read_axes(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return the values of each varied axis."""
+    """Return the values of each varied axis by name."""
     given = collect_unique("--vary", arguments.vary)
     return {axis.name: axis.values for axis in (parse_axis(*pair) for pair in given.items())}
 
@@ -86,7 +86,7 @@ def describe_changes(arguments: argparse.Namespace) -> dict[str, str]:
 
 
 def collect_unique(option: str, pairs: list[tuple[str, str]]) -> dict[str, str]:
-    """Make a dictionary of pairs; raise `InputError` if a key occurs twice."""
+    """Convert pairs to a dictionary; raise `InputError` if a key occurs twice."""
     found: dict[str, str] = {}
     for key, value in pairs:
         if key in found:

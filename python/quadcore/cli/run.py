@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ..simulation.live_view import LiveView
     from ..simulation.simulation import Simulation
 
-_PATIENCE = 10.0  # s, for the browser to open a live view
+_PATIENCE = 10.0  # s; time limit for the browser to open a live view
 
 
 def register(commands: Any) -> None:
@@ -91,7 +91,7 @@ def register(commands: Any) -> None:
 
 
 def run_flight(arguments: argparse.Namespace) -> None:
-    """Simulate, write what was asked for, and print a summary."""
+    """Simulate a flight, write the requested files, and print a summary."""
     if arguments.models:
         from .run_fleet import run_fleet  # most flights have one vehicle
 
@@ -180,7 +180,7 @@ def _open_view(
 
 
 def _record_session(plan: FlightPlan, arguments: argparse.Namespace) -> None:
-    """Let the autopilot record its session."""
+    """Make the autopilot record its session."""
     from ..autopilots.autopilot import Autopilot
 
     if not isinstance(plan.controller, Autopilot):

@@ -44,7 +44,7 @@ _OF_ONE = ("live", "pace", "record")
 
 
 def run_fleet(arguments: argparse.Namespace) -> None:
-    """Simulate several vehicles, write what was asked for, and print a summary of each."""
+    """Simulate several vehicles, write the requested files, and print a summary of each."""
     vehicles = split_vehicles(arguments)
     for vehicle in vehicles:
         for name in _OF_ONE:
@@ -93,13 +93,13 @@ def split_vehicles(arguments: argparse.Namespace) -> List[argparse.Namespace]:
         read = arguments.parser.parse_args([*common, *own, "--", model])
         read.words = arguments.words
         if not any(word.split("=", 1)[0] == "--seed" for word in own):
-            read.seed += number  # equal sensors would have equal noise
+            read.seed += number  # otherwise equal sensors have equal noise
         vehicles.append(read)
     return vehicles
 
 
 def _check_starts(flown: Dict[str, RunVehicle]) -> None:
-    """Raise `InputError` if two vehicles start at one place."""
+    """Raise `InputError` if two vehicles start at the same position."""
     for (one, first), (other, second) in itertools.combinations(flown.items(), 2):
         if (first.simulation.state.position == second.simulation.state.position).all():
             raise InputError(
@@ -171,7 +171,7 @@ def _fly(fleet: Fleet, flown: Dict[str, RunVehicle], out: Optional[Path]) -> Non
 
 @contextmanager
 def _name_controller_errors(fleet: Fleet) -> Iterator[None]:
-    """Add the name of a vehicle to errors of its controller, as `convert_controller_errors`."""
+    """Convert controller errors as `convert_controller_errors`, and add the vehicle's name."""
     simulation = next(iter(fleet.vehicles.values()))
     try:
         with convert_controller_errors(simulation):
@@ -189,7 +189,7 @@ def _name_controller_errors(fleet: Fleet) -> Iterator[None]:
 def _write_shared(
     out: Path, flown: Mapping[str, RunVehicle], rows: Mapping[str, Sequence[Tuple[str, str]]]
 ) -> List[Path]:
-    """Write the page that shows all vehicles, and the list of all flights."""
+    """Write the page with all vehicles, and the list of all flights."""
     from ..report.page import write_page  # jinja2 is slow to import
     from ..report.player import PlayerFlight, make_section
 

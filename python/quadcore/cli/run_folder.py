@@ -1,4 +1,4 @@
-"""The folder that ``quadcore run`` writes."""
+"""Output folder of ``quadcore run``."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ _PLOTS = {
     "error": "Tracking error",
     "autopilot": "Autopilot",
 }
-"""Headings of the page, by the names of the plots."""
+"""Headings on the page by the name of the plot."""
 
 
 def write_description(
     arguments: argparse.Namespace, plan: FlightPlan, simulation: Simulation
 ) -> List[Path]:
-    """Write the expanded URDF and what the flight can be repeated from."""
+    """Write the expanded URDF, and the settings from which the flight can be repeated."""
     settings = {
         "model": plan.model.name,
         "engine": plan.engine,
@@ -90,7 +90,7 @@ def write_results(
     log: Log,
     rows: Sequence[Tuple[str, str]],
 ) -> List[Path]:
-    """Write plots and page."""
+    """Write the plots and the page."""
     from ..report.page import write_page  # jinja2 is slow to import
     from ..report.player import PlayerFlight, make_section
 

@@ -1,4 +1,4 @@
-"""The result of one flight, as values and as lines of a summary."""
+"""Result of a flight as plain values and as lines of a summary."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def summarize(
     pilot: Union[ControllerPilot, PluginPilot, None],
     errors: Optional[TrackingError],
 ) -> Dict[str, Any]:
-    """Collect the result in plain values, by name."""
+    """Return the result as plain values by name."""
     duration = simulation.time - simulation.world.start_time
     steps = round(duration / simulation.dt)
     size = per_command(simulation)
@@ -82,7 +82,7 @@ def summarize(
 
 
 def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
-    """Write the result as lines of a name and a text."""
+    """Format the result as lines, each with a name and a text."""
     commanded = ""
     if "max_rotor_speed_commanded" in result:
         commanded = f" (commanded {result['max_rotor_speed_commanded']:.1f} rad/s)"
@@ -125,7 +125,7 @@ def _describe_control(result: Dict[str, Any]) -> List[Tuple[str, str]]:
     start = ", start in its full state" if result["starts_on_reference"] else ""
     late = f", {result['final_error']:.4g} m (last {TAIL:g} s)" if result["duration"] > TAIL else ""
     name = str(result["controller"])
-    if not math.isnan(result["controller_rate"]):  # that of a plugin is its own
+    if not math.isnan(result["controller_rate"]):  # a plugin sets its own rate
         name += f", {result['controller_rate']:g} Hz, delay {result['delay']:g} s"
     rows = [
         ("controller", name),
@@ -141,7 +141,7 @@ def _describe_control(result: Dict[str, Any]) -> List[Tuple[str, str]]:
 
 
 def _round(values: Any, digits: int) -> List[float]:
-    # Rounded before -0 becomes 0.
+    # Round first, then turn -0 into 0.
     return [round(float(value), digits) + 0.0 for value in values]
 
 

@@ -1,4 +1,4 @@
-"""One vehicle of ``quadcore run``: its plan, its recorders and its results."""
+"""Vehicle of ``quadcore run``: its plan, recorders and results."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
 
 Rows = Sequence[Tuple[str, str]]
-"""Lines of a summary, each a name and a text."""
+"""Lines of a summary: pairs of a name and a text."""
 
 
 class RunVehicle:
-    """A vehicle with its pilot, the recorders of its flight and the files to write.
+    """Vehicle with its pilot, the recorders of its flight, and the files to write.
 
     Parameters
     ----------
     arguments
         Options of the vehicle.
     plan : FlightPlan
-        Plan of its flight.
+        Plan of the flight.
     simulation : Simulation
-        Simulation of this plan.
+        Simulation of the plan.
     """
 
     def __init__(
@@ -66,17 +66,17 @@ class RunVehicle:
             self._described = run_folder.write_description(arguments, plan, simulation)
 
     def open_recording(self) -> Recording:
-        """Return the recording of the flight, which has all recorders."""
+        """Make the recording of the flight with all recorders."""
         self.recording = Recording(self._logs, self.recorders)
         return self.recording
 
     def keep_logs(self) -> None:
-        """Close the logs of a flight that ended early, and name them."""
+        """Close the logs of a flight that ended early, and print their paths."""
         for file in self.recording.close():
             terminal.print_message(f"log until t = {self.fastest.time:.6g} s: {file}")
 
     def summarize(self, elapsed: float) -> Dict[str, Any]:
-        """Return the result of the flight, by name."""
+        """Return the result of the flight as plain values by name."""
         return summarize(
             self.arguments,
             self.plan,
@@ -89,7 +89,7 @@ class RunVehicle:
         )
 
     def write_results(self, logs: Sequence[Path], rows: Rows) -> List[Path]:
-        """Write plots and page, and return all files of the flight."""
+        """Write the plots and the page, and return the paths of all files."""
         files = list(logs)
         if self.drawn is not None:
             files += self._described
@@ -99,7 +99,7 @@ class RunVehicle:
         return files
 
     def warn(self) -> None:
-        """Warn of commands and references that fit the vehicle badly."""
+        """Warn about commands and references that do not suit the vehicle."""
         warn_of_commands(self.simulation, self.plan)
         if self.errors is not None:
             warn_of_yaw_zero(self.simulation, self.errors.max)
@@ -111,7 +111,7 @@ def print_result(rows: Rows, title: str = "") -> None:
 
 
 def print_files(files: Sequence[Path], rows: Rows) -> None:
-    """Print the files that were written, as further lines of the summary with these rows."""
+    """Print the paths of the written files as further lines of the summary with these rows."""
     width = max(len(name) for name, _ in rows)
     named = [("" if i else "written", str(file)) for i, file in enumerate(files)]
     _print_lines([(name.ljust(width), file) for name, file in named])
@@ -129,7 +129,7 @@ def _print_lines(rows: Rows, title: str = "") -> None:
 
 
 def _check_log_files(arguments: argparse.Namespace) -> List[Path]:
-    """Name the logs to write, and check now that they can be written after the flight."""
+    """Return the paths of the logs, after a check that they can be written."""
     files = list(arguments.log)
     if arguments.out is not None:
         files.insert(0, arguments.out / run_folder.LOG)

@@ -75,14 +75,14 @@ def serve_clients(arguments: argparse.Namespace) -> None:
 
 
 class _Logs:
-    """A log for each flight: NAME.csv, NAME-2.csv ...; files that exist are kept."""
+    """Logs of successive flights: NAME.csv, NAME-2.csv and so on; existing files are kept."""
 
     def __init__(self, first: Path, columns: Sequence[str], ignored: Sequence[str]) -> None:
         self._first, self._columns, self._ignored = first, columns, ignored
         self._count = 0
 
     def begin(self) -> LogFile:
-        """Open the next log."""
+        """Open the log of the next flight."""
         self._count += 1
         path = self._first if self._count == 1 else self._name_numbered()
         while self._count > 1 and os.path.lexists(path):  # written by an earlier server

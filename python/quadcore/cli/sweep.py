@@ -1,4 +1,4 @@
-"""``quadcore sweep``: simulate thousands of flights; resumable."""
+"""``quadcore sweep``: simulate thousands of flights; can be resumed."""
 
 from __future__ import annotations
 
@@ -82,14 +82,14 @@ def register(commands: Any) -> None:
 
 
 def sweep_flights(arguments: argparse.Namespace) -> None:
-    """Simulate the flights that are missing, and summarize all."""
+    """Simulate the missing flights, and summarise all flights."""
     from ..studies.sweep.output import FILES, choose_metric, remove_sweep
     from ..studies.sweep.sweep import TABLE
 
     arguments, plan = make_plan(arguments, _make_plan)
     measure = choose_metric(plan, arguments.measure)
     document = "" if arguments.resume else "sweep.json"
-    others = [name for name in FILES if name != TABLE]  # whose rows are checked when read
+    others = [name for name in FILES if name != TABLE]  # checked when they are read
     with output_folder(arguments.out, others, document):
         if not arguments.resume:
             remove_sweep(arguments.out)

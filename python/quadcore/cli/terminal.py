@@ -1,4 +1,4 @@
-"""Text that the commands print."""
+"""Text output of the commands."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from rich.table import Table
 from ..studies.table import make_json
 from ..support.warning import QuadcoreWarning
 
-_LONG = 1.0  # s; a shorter run needs no progress bar
+_LONG = 1.0  # s; shorter runs have no progress bar
 
 
 def prepare_streams() -> None:
-    """Let standard output and error take any text, whatever they are connected to."""
+    """Make standard output and standard error accept any text."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:  # closed by the caller
@@ -31,19 +31,19 @@ def prepare_streams() -> None:
 
 
 def print_message(line: str) -> None:
-    """Print a line on standard error; do nothing if that is closed."""
+    """Print a line to standard error; do nothing if it is closed."""
     with suppress(OSError):
         print(escape_controls(line), file=sys.stderr)
 
 
 def discard_output() -> None:
-    """Discard what standard output could not take, so that the flush at exit succeeds."""
+    """Discard pending standard output, so that the flush at exit succeeds."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def escape_controls(text: str) -> str:
-    """Escape control characters, which names of files may contain."""
+    """Escape control characters, which file names may contain."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
@@ -53,7 +53,7 @@ class _Console(Console):
         super().print(*shown, **options)
 
     def on_broken_pipe(self) -> None:
-        raise BrokenPipeError  # newer rich would exit with status 1
+        raise BrokenPipeError  # newer versions of rich would exit with status 1
 
 
 class _Table(Table):
@@ -62,13 +62,13 @@ class _Table(Table):
 
 
 def make_console() -> Console:
-    """Make a console without markup that breaks lines only on a terminal."""
+    """Make a console without markup that wraps lines only on a terminal."""
     width = None if sys.stdout.isatty() else 10_000
     return _Console(width=width, markup=False, emoji=False, highlight=False)
 
 
 def make_table(*columns: str, numbers: bool = False, **options: Any) -> Table:
-    """Make a table; cells wrap, except those of the first column and of tables of numbers."""
+    """Make a table; cells wrap, except in the first column and in tables of numbers."""
     made = _Table(box=None, pad_edge=False, header_style="bold", **options)
     for i, column in enumerate(columns):
         made.add_column(
@@ -81,7 +81,7 @@ def make_table(*columns: str, numbers: bool = False, **options: Any) -> Table:
 
 
 def print_written(files: Iterable[Path]) -> None:
-    """Print the names of the files that were written, a line for each."""
+    """Print the paths of the written files, one per line."""
     for file in files:
         make_console().print(f"written {file}")
 
@@ -95,7 +95,7 @@ def print_json(content: Any) -> None:
 def print_warnings() -> Iterator[None]:
     """Print each QuadcoreWarning once, as a line on standard error."""
     show_others = warnings.showwarning
-    printed = set()  # Python forgets "once" after a block that ignores some
+    printed = set()  # Python forgets "once" after a block that ignores warnings
 
     def show(message: Any, category: Any, *where: Any, **to: Any) -> None:
         if issubclass(category, QuadcoreWarning):
@@ -115,7 +115,7 @@ def print_warnings() -> Iterator[None]:
 def show_progress(
     quiet: bool, what: str = "simulating"
 ) -> Iterator[Callable[[int, int], None] | None]:
-    """Give a callback that shows the progress of a long run; None without a terminal."""
+    """Provide a callback that shows the progress of a long run; None without a terminal."""
     if quiet or not sys.stderr.isatty():
         yield None
         return
@@ -129,7 +129,7 @@ def show_progress(
     )
     with_bar = Progress(*columns, console=Console(stderr=True), transient=True)
     task = with_bar.add_task(what, rate="")
-    first: int | None = None  # rows that a resumed sweep has already
+    first: int | None = None  # number of rows that a resumed sweep already has
 
     def report(done: int, total: int) -> None:
         nonlocal first

@@ -105,7 +105,7 @@ def register(commands: Any) -> None:
 
 
 def tune_controller(arguments: argparse.Namespace) -> None:
-    """Search, print the gains, and write them."""
+    """Search for gains, and print and write them."""
     from ..studies.tune.output import FILES
 
     arguments, problem = make_plan(arguments, _make_problem)
@@ -136,7 +136,7 @@ def _tune(arguments: argparse.Namespace, problem: Problem, folder: Optional[Path
 
 
 def _find_folder(arguments: argparse.Namespace) -> Optional[Path]:
-    """Return the folder of the page, if any; ``--out`` may be the gains file."""
+    """Return the folder for the page, or None; ``--out`` may be the gains file."""
     out: Optional[Path] = arguments.out
     return None if out is None or out.suffix.lower() in _YAML else out
 
@@ -160,7 +160,7 @@ def _make_problem(arguments: argparse.Namespace) -> Problem:
 
     out = _find_gains_file(arguments)
     refuse_log_every(arguments, "tuning")
-    if out.parent != _find_folder(arguments):  # which is made later
+    if out.parent != _find_folder(arguments):  # the folder is created later
         check_writable(out)
     return Problem(
         arguments.controller,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 _OF_FLIGHTS = ("duration", "spawn", "seed", "log_every", "motors", "jobs")
-"""Options that a recorded flight excludes."""
+"""Options that cannot be used with a recorded flight."""
 
 
 def register(commands: Any) -> None:
@@ -78,10 +78,10 @@ def register(commands: Any) -> None:
 
 
 def validate_engines(arguments: argparse.Namespace) -> None:
-    """Simulate everything, print the differences and their causes, and write them."""
+    """Simulate all flights, and print and write their differences with the causes."""
     if arguments.plant is not None:
         return judge_recording(arguments)
-    # scipy and jinja2 are slow to import.
+    # slow to import
     from ..thesis.validation import Case, Experiment
 
     experiment = Experiment.of(
@@ -97,7 +97,7 @@ def validate_engines(arguments: argparse.Namespace) -> None:
     experiment.flight(Case("eigen")).simulation()
     out = arguments.out
     if out is not None:
-        prepare_folder(out, ["report.html"])  # after the flights would be too late
+        prepare_folder(out, ["report.html"])  # checking after the flights would be too late
     study = _conduct(experiment, arguments)
     failures = _describe_failures(study)
     if out is not None:
@@ -118,7 +118,7 @@ def validate_engines(arguments: argparse.Namespace) -> None:
 
 
 def judge_recording(arguments: argparse.Namespace) -> None:
-    """Print the differences of a recording from the model and the engines, and write them."""
+    """Print and write the differences of a recording from the model and the engines."""
     from ..thesis.validation import recorded_plant
     from ..thesis.validation.output import size
 
@@ -158,11 +158,11 @@ def judge_recording(arguments: argparse.Namespace) -> None:
 
 
 _JUDGED = ("position", "attitude", "velocity", "rates")
-"""m, rad, m/s, rad/s."""
+"""States in the table: m, rad, m/s, rad/s."""
 
 
 def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
-    """Simulate; the flights that ended before an interrupt are written."""
+    """Simulate all flights; on an interrupt, write the completed flights."""
     from ..thesis.validation import run_study
 
     def write_tables_so_far(study: Study) -> None:
@@ -182,7 +182,7 @@ def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
 
 
 def _write(study: Study, out: Path) -> List[Path]:
-    """Write page and tables, before any figure is drawn."""
+    """Write the page and the tables before figures are drawn."""
     from ..thesis.validation.output import write_report, write_tables
 
     with interrupts.hold_signals():
@@ -191,7 +191,7 @@ def _write(study: Study, out: Path) -> List[Path]:
 
 
 def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> Dict[str, Drawing]:
-    """Write each figure as soon as it is drawn, and then the page with all figures."""
+    """Write each figure when it is drawn, and then the page with all figures."""
     from ..thesis.validation.figures import list_figures
     from ..thesis.validation.output import write_figure, write_report
 
@@ -226,7 +226,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
 
 
 def _describe_failures(study: Study) -> List[str]:
-    """Describe how many flights failed, and why the first did."""
+    """Describe the number of failed flights and the first failure."""
     failed = [row for row in study.rows if row.failure]
     if not failed:
         return []
@@ -247,7 +247,7 @@ def _show(study: Study) -> None:
 
 
 def _describe(study: Study) -> Dict[str, Any]:
-    """Describe the maximum differences of each flight, and their causes, in plain values."""
+    """Describe the maximum differences of each flight and their causes as plain values."""
     return {
         "flights": [
             {
