@@ -148,6 +148,56 @@ def test_wrong_arguments_move_nothing(options, message):
     assert batch.time.tolist() == [0, 0, 0]
 
 
+class Late(Hover):
+    """Hovers for 0.05 s, then returns other commands."""
+
+    def __init__(self, change):
+        self.change = change
+
+    def __call__(self, t, state, reference):
+        commands = super().__call__(t, state, reference)
+        return commands if t < 0.0495 else self.change(commands)
+
+
+def spoil(commands):
+    commands[-1, 1] = np.nan
+    return commands
+
+
+@pytest.mark.parametrize("change", [spoil, lambda commands: commands[:, :3]], ids=["nan", "shape"])
+def test_errors_of_a_vectorized_controller_contain_what_those_of_single_flights_contain(change):
+    found = []
+    for make in (qc.BatchSimulation, qc.Simulation):
+        simulation = make("quadrotor", engine="eigen", xacro_args=SLOW)
+        with pytest.raises(qc.QuadcoreError) as failure:
+            simulation.run(0.1, controller=Late(change), reference="hover")
+        found.append(failure.value)
+    batch, alone = found
+    assert type(batch) is type(alone)
+    assert batch.time == pytest.approx(alone.time) == pytest.approx(0.05)
+    assert str(batch).replace(" for vehicle 0", "") == str(alone)
+
+
+def test_a_command_that_is_not_finite_names_its_vehicle():
+    batch = qc.BatchSimulation("quadrotor", 3)
+    with pytest.raises(qc.FlightError, match=r"for vehicle 2: the command for rotor 2 is not a f"):
+        batch.run(0.1, controller=Late(spoil))
+
+
+@pytest.mark.parametrize(
+    "control",
+    [{}, {"controller": "pid", "reference": "hover"}, {"controller": Hover()}],
+    ids=["commands", "built in", "vectorized"],
+)
+def test_a_log_of_no_steps_contains_the_present_row(control):
+    batch = qc.BatchSimulation("quadrotor", 2, xacro_args=SLOW)
+    _, log = batch.run(0, log=[0, 1], **control)
+    alone = qc.Simulation("quadrotor", engine="eigen", seed=1, xacro_args=SLOW)
+    expected = alone.run(0, **control)
+    np.testing.assert_array_equal(log.table, expected.table[:, : log.table.shape[1]])
+    assert batch.time.tolist() == [0, 0]
+
+
 @pytest.mark.parametrize("reference", [None, "hover"])
 def test_a_vectorized_controller_with_columns_for_the_log_is_refused(reference):
     controller = Hover()

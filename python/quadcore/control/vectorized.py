@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Sequence
 
 import numpy as np
 
-from .._core import InputError
+from .._core import FlightError, InputError
 from ..support.arguments import shorten
 from .reference_ahead import ReferenceSamples
 
@@ -59,6 +59,18 @@ def check_commands(answer: Any, n: int, width: int) -> np.ndarray:
     return commands
 
 
+def _make_failure(t: float, commands: np.ndarray) -> FlightError:
+    """Describe the first command that is not finite, as the core does for one vehicle."""
+    vehicle, rotor = np.argwhere(~np.isfinite(commands))[0]
+    failure = FlightError(
+        f"the flight failed at t = {t:f} s: the controller returned {shorten(commands[vehicle])} "
+        f"for vehicle {vehicle}: the command for rotor {rotor + 1} is not a finite number. "
+        f"Return {commands.shape[1]} rotor speeds in rad/s."
+    )
+    failure.time = t
+    return failure
+
+
 class CommandAll:
     """Function that calls a vectorized controller for n vehicles with the same reference.
 
@@ -93,7 +105,13 @@ class CommandAll:
         if self._reference is not None:
             wanted = ReferenceSamples.repeat(self._reference(t), self._n)
         answer = self._controller(t, VectorState.of_rows(rows), wanted)
-        commands = check_commands(answer, self._n, len(self._limits))
+        try:
+            commands = check_commands(answer, self._n, len(self._limits))
+        except InputError as error:
+            error.time = t  # type: ignore[attr-defined]
+            raise
+        if not np.isfinite(commands).all():
+            raise _make_failure(t, commands)
         self.calls += 1
         self.saturated += (np.abs(commands) >= self._limits).any(axis=1)
         return commands

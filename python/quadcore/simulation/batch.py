@@ -24,7 +24,7 @@ from .batch_guides import ControllerOfAll, ReferenceOfAll, follow, make_guides
 from .batch_state import BatchState as BatchState
 from .batch_vehicles import check_vehicle_count, explain_refusal, read_vehicles
 from .engines import EngineName, check_engine_and_step
-from .flight import check_log_length, count_steps
+from .flight import check_log_every, check_log_length, count_steps
 from .log import Log
 
 if TYPE_CHECKING:
@@ -224,6 +224,8 @@ class BatchSimulation(_core.Batch):
         InputError
             If an argument is invalid, or a vehicle with a controller is not in its initial state.
             Nothing moves in this case.
+        FlightError
+            If a vectorized controller returns a command that is not finite.
         """
         if commands is not None and controller is not None:
             raise InputError("a batch takes commands or a controller. Give one of them.")
@@ -236,7 +238,8 @@ class BatchSimulation(_core.Batch):
             if vehicle >= self.n:
                 raise InputError(f"log names vehicle {vehicle}. Use 0 to {self.n - 1}.")
         total = count_steps(duration, self.dt)
-        if check_whole(log_every, "log_every") < 1 or chosen:
+        log_every = check_log_every(log_every)
+        if chosen and total:  # without steps, the log is the present row
             check_log_length(duration, self.dt, log_every)
         if controller is not None:
             guides = make_guides(self._vehicles, self._engine, self.dt, controller, reference)
