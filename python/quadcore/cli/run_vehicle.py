@@ -106,18 +106,7 @@ class RunVehicle:
 
 
 def print_result(rows: Rows, title: str = "") -> None:
-    """Print the lines of a summary."""
-    _print_lines(rows, title)
-
-
-def print_files(files: Sequence[Path], rows: Rows) -> None:
-    """Print the paths of the written files as further lines of the summary with these rows."""
-    width = max(len(name) for name, _ in rows)
-    named = [("" if i else "written", str(file)) for i, file in enumerate(files)]
-    _print_lines([(name.ljust(width), file) for name, file in named])
-
-
-def _print_lines(rows: Rows, title: str = "") -> None:
+    """Print the lines of a summary, if there are any."""
     if not rows:
         return
     table = terminal.make_table("", "", show_header=False)
@@ -126,6 +115,13 @@ def _print_lines(rows: Rows, title: str = "") -> None:
     for row in rows:
         table.add_row(*row)
     terminal.make_console().print(table)
+
+
+def print_files(files: Sequence[Path], rows: Rows) -> None:
+    """Print the paths of the written files as further lines of the summary with these rows."""
+    width = max(len(name) for name, _ in rows)
+    named = [("" if i else "written", str(file)) for i, file in enumerate(files)]
+    print_result([(name.ljust(width), file) for name, file in named])
 
 
 def _check_log_files(arguments: argparse.Namespace) -> List[Path]:
