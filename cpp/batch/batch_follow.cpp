@@ -18,7 +18,7 @@ void Batch::Implementation::follow(const std::vector<BatchGuide>& guides,
     std::vector<std::size_t> apart;
     for (std::size_t i = first; i < end; ++i) {
       if (!failures_[i].empty()) continue;
-      come_back(i);
+      return_to_lanes(i);
       const batch::LaneSensor* sensor = find_sensor(i, odometry);
       if (sensor && lanes_->flies(i)) {
         followers.push_back(make_follower(i, *sensor, guides[i], guided[i]));
@@ -64,7 +64,7 @@ void Batch::Implementation::follow_together(const CommandAll& command_all, doubl
                                             std::vector<BatchGuided>& guided) {
   check_start(guided);
   for (std::size_t i = 0; i < size(); ++i) {
-    come_back(i);
+    return_to_lanes(i);
     if (!members_[i].in_lanes || find_sensor(i, odometry)) continue;
     throw InputError("vehicle " + std::to_string(i) + " measures topic '" + odometry +
                      "' in a way that batches do not model. Simulate it alone.");
@@ -103,12 +103,12 @@ void Batch::Implementation::follow_apart(std::size_t i, const BatchGuide& guide,
                                          const std::string& odometry, std::int64_t steps,
                                          std::int64_t log_every, BatchGuided& guided,
                                          batch::SharedPoll& poll) {
-  Simulation& simulation = go_apart(i);
+  Simulation& simulation = simulate_apart(i);
   if (members_[i].in_lanes) {
-    simulation.reset(members_[i].made_of.seed);
+    simulation.reset(members_[i].vehicle.seed);
     const auto rotors = static_cast<Eigen::Index>(common_.rotors());
     for (int k = 0; k < placements_[i]; ++k) {
-      simulation.set_state(batch::taken(&places_[i * state_width()], rotors));
+      simulation.set_state(batch::read_state(&places_[i * state_width()], rotors));
     }
     if (is_commanded_[i]) simulation.command(command_of(i), command_width());
   }
@@ -117,7 +117,7 @@ void Batch::Implementation::follow_apart(std::size_t i, const BatchGuide& guide,
     const Topics& topics = simulation.topics();
     const Topic& commands = topics[topics.at(Simulation::command_topic)];
     note_command(i, commands.values.data());
-    settle(i);
+    store_simulation(i);
     if (members_[i].in_lanes) lanes_->command(i, command_of(i));
   };
   try {
@@ -153,7 +153,7 @@ batch::Follower Batch::Implementation::make_follower(std::size_t i, const batch:
 }
 
 std::uint64_t Batch::Implementation::seed_of(std::size_t i, const batch::LaneSensor& sensor) const {
-  const std::uint64_t seed = stream_seed(members_[i].made_of.seed, sensor.plugin);
+  const std::uint64_t seed = stream_seed(members_[i].vehicle.seed, sensor.plugin);
   return sensor.sensor.seed.value_or(seed);
 }
 

@@ -12,15 +12,15 @@ Batch::Implementation::Implementation(std::vector<BatchVehicle> vehicles, const 
         "a batch cannot start at the time of a saved world. Remove <state> from the world, or "
         "simulate each vehicle alone.");
   }
-  batch::Crew crew = batch::make_crew(std::move(vehicles), common_);
-  members_ = std::move(crew.members);
+  batch::Members all = batch::make_members(std::move(vehicles), common_);
+  members_ = std::move(all.members);
   steps_.resize(size());
   is_apart_.resize(size());
   is_commanded_.resize(size());
   commands_.resize(size() * command_width());
   failures_.resize(size());
   placements_.resize(size());
-  lanes_ = std::make_unique<LaneBlocks>(crew.in_lanes, common_.rotors(), world);
+  lanes_ = std::make_unique<LaneBlocks>(all.in_lanes, common_.rotors(), world);
   for (std::size_t i = 0; i < size(); ++i) begin(i);
 }
 
@@ -45,9 +45,9 @@ void Batch::Implementation::step(const double* commands, std::int64_t count) {
       }
       steps_[i] += flown[i - first];
       if (flown[i - first] < count || hears) {
-        go_on_apart(i, commands, count - flown[i - first]);
+        continue_apart(i, commands, count - flown[i - first]);
       } else if (count > 0 && is_apart_[i]) {
-        come_back(i);
+        return_to_lanes(i);
       }
     }
   });
@@ -60,28 +60,28 @@ void Batch::Implementation::begin(std::size_t i) {
   failures_[i].clear();
   member.warnings.resize(member.warned_at_load);
   if (member.in_lanes) {
-    come_back(i);
+    return_to_lanes(i);
     lanes_->begin(i, member.start);
   } else {
-    go_apart(i).reset(member.made_of.seed);
+    simulate_apart(i).reset(member.vehicle.seed);
   }
 }
 
-Simulation& Batch::Implementation::go_apart(std::size_t i) {
-  if (!members_[i].apart) members_[i].apart = common_.simulate(members_[i].made_of);
+Simulation& Batch::Implementation::simulate_apart(std::size_t i) {
+  if (!members_[i].apart) members_[i].apart = common_.simulate(members_[i].vehicle);
   is_apart_[i] = true;
   return *members_[i].apart;
 }
 
-void Batch::Implementation::come_back(std::size_t i) {
+void Batch::Implementation::return_to_lanes(std::size_t i) {
   if (!members_[i].in_lanes) return;
   members_[i].apart.reset();
   is_apart_[i] = false;
 }
 
-void Batch::Implementation::go_on_apart(std::size_t i, bool has_commands, std::int64_t steps) {
+void Batch::Implementation::continue_apart(std::size_t i, bool has_commands, std::int64_t steps) {
   Member& member = members_[i];
-  Simulation& simulation = go_apart(i);
+  Simulation& simulation = simulate_apart(i);
   if (member.in_lanes) {
     Snapshot now = simulation.snapshot();
     lanes_->get_engine_state(i, now.engine);
@@ -96,15 +96,15 @@ void Batch::Implementation::go_on_apart(std::size_t i, bool has_commands, std::i
   } catch (const FlightError& error) {
     failures_[i] = error.what();
   }
-  settle(i);
+  store_simulation(i);
 }
 
-void Batch::Implementation::settle(std::size_t i) {
+void Batch::Implementation::store_simulation(std::size_t i) {
   Member& member = members_[i];
   Simulation& simulation = *member.apart;
   const Snapshot flown = simulation.snapshot();
   steps_[i] = flown.steps;
-  member.hear(flown.warnings);
+  member.add_warnings(flown.warnings);
   if (!member.in_lanes) return;
   lanes_->set_engine_state(i, flown.engine);
   lanes_->let_fly(i, failures_[i].empty());

@@ -21,7 +21,7 @@ struct BatchSnapshot::Content {
     std::vector<std::string> warnings;
     std::optional<Snapshot> apart;
   };
-  std::shared_ptr<const void> of;  ///< identity of the batch
+  std::shared_ptr<const void> batch;  ///< identity of the batch
   LaneBlocks::Saved lanes;
   std::vector<std::int64_t> steps;
   std::vector<double> commands;
@@ -80,12 +80,15 @@ class Batch::Implementation {
 
   void begin(std::size_t i);
 
-  Simulation& go_apart(std::size_t i);
+  /// Return the simulation of a vehicle that does not fly in the lanes; it is made if necessary.
+  Simulation& simulate_apart(std::size_t i);
 
-  void come_back(std::size_t i);
+  /// Discard the simulation of a vehicle that can fly in the lanes.
+  void return_to_lanes(std::size_t i);
 
+  /// Simulate a vehicle that does not fly in the lanes, from its current state.
   /// \param has_commands  whether this call has commands
-  void go_on_apart(std::size_t i, bool has_commands, std::int64_t steps);
+  void continue_apart(std::size_t i, bool has_commands, std::int64_t steps);
 
   /// Fly the vehicles of a block that follow in the lanes.
   void follow_in_lanes(std::size_t block, double* work, std::vector<batch::Follower>& followers,
@@ -121,8 +124,8 @@ class Batch::Implementation {
   /// Add a row to the log of each vehicle that has not failed.
   void log_all(std::vector<BatchGuided>& guided, const std::vector<double>& states) const;
 
-  /// Take the state of a vehicle over from its simulation.
-  void settle(std::size_t i);
+  /// Store the state of the simulation of a vehicle as that of the vehicle.
+  void store_simulation(std::size_t i);
 
   const std::shared_ptr<const void> identity_ = std::make_shared<int>();
   batch::Common common_;

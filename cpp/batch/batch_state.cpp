@@ -8,7 +8,7 @@ void Batch::Implementation::get_state(double* rows) const {
     lanes_->show(block, end - first, work, rows + first * state_width());
     for (std::size_t i = first; i < end; ++i) {
       if (!is_apart_[i] || (members_[i].in_lanes && failures_[i].empty())) continue;
-      batch::put(members_[i].apart->state(), rows + i * state_width());
+      batch::write_state(members_[i].apart->state(), rows + i * state_width());
     }
   });
 }
@@ -17,7 +17,7 @@ void Batch::Implementation::set_state(const double* rows) {
   const auto rotors = static_cast<Eigen::Index>(common_.rotors());
   std::vector<VehicleState> states;
   for (std::size_t i = 0; i < size(); ++i) {
-    states.push_back(batch::taken(rows + i * state_width(), rotors));
+    states.push_back(batch::read_state(rows + i * state_width(), rotors));
     batch::check(states.back(), i);
   }
   places_.assign(rows, rows + size() * state_width());
@@ -28,12 +28,12 @@ void Batch::Implementation::set_state(const double* rows) {
     placements_[i] = steps_[i] == 0 && placements_[i] >= 0 ? placements_[i] + 1 : -1;
     steps_[i] = 0;
     if (!member.in_lanes) {
-      go_apart(i).set_state(states[i]);
+      simulate_apart(i).set_state(states[i]);
       continue;
     }
-    come_back(i);
-    if (!alike || !batch::are_built_alike(member.made_of, members_[i - 1].made_of)) {
-      alike = common_.simulate(member.made_of);
+    return_to_lanes(i);
+    if (!alike || !batch::are_built_alike(member.vehicle, members_[i - 1].vehicle)) {
+      alike = common_.simulate(member.vehicle);
     }
     alike->set_state(states[i]);
     lanes_->set_engine_state(i, alike->snapshot().engine);
@@ -44,47 +44,47 @@ void Batch::Implementation::set_state(const double* rows) {
 void Batch::Implementation::reset(const bool* mask, const std::uint64_t* seeds) {
   for (std::size_t i = 0; i < size(); ++i) {
     if (!mask[i]) continue;
-    if (seeds) members_[i].made_of.seed = seeds[i];
+    if (seeds) members_[i].vehicle.seed = seeds[i];
     begin(i);
   }
 }
 
 BatchSnapshot Batch::Implementation::snapshot() const {
-  auto taken = std::make_shared<BatchSnapshot::Content>();
-  taken->of = identity_;
-  taken->lanes = lanes_->save();
-  taken->steps = steps_;
-  taken->commands = commands_;
-  taken->is_commanded = is_commanded_;
-  taken->failures = failures_;
-  taken->placements = placements_;
-  taken->places = places_;
+  auto content = std::make_shared<BatchSnapshot::Content>();
+  content->batch = identity_;
+  content->lanes = lanes_->save();
+  content->steps = steps_;
+  content->commands = commands_;
+  content->is_commanded = is_commanded_;
+  content->failures = failures_;
+  content->placements = placements_;
+  content->places = places_;
   for (const Member& member : members_) {
-    taken->vehicles.push_back({member.made_of.seed, member.warnings, {}});
-    if (member.apart) taken->vehicles.back().apart = member.apart->snapshot();
+    content->vehicles.push_back({member.vehicle.seed, member.warnings, {}});
+    if (member.apart) content->vehicles.back().apart = member.apart->snapshot();
   }
-  return {taken};
+  return {content};
 }
 
 void Batch::Implementation::restore(const BatchSnapshot& snapshot) {
-  const BatchSnapshot::Content& taken = *snapshot.content;
-  if (taken.of != identity_)
+  const BatchSnapshot::Content& content = *snapshot.content;
+  if (content.batch != identity_)
     throw InputError(
         "snapshot: it was taken from another batch. Restore a snapshot of this batch.");
-  lanes_->restore(taken.lanes);
-  steps_ = taken.steps;
-  commands_ = taken.commands;
-  is_commanded_ = taken.is_commanded;
-  failures_ = taken.failures;
-  placements_ = taken.placements;
-  places_ = taken.places;
+  lanes_->restore(content.lanes);
+  steps_ = content.steps;
+  commands_ = content.commands;
+  is_commanded_ = content.is_commanded;
+  failures_ = content.failures;
+  placements_ = content.placements;
+  places_ = content.places;
   for (std::size_t i = 0; i < size(); ++i) {
-    members_[i].made_of.seed = taken.vehicles[i].seed;
-    members_[i].warnings = taken.vehicles[i].warnings;
-    if (taken.vehicles[i].apart) {
-      go_apart(i).restore(*taken.vehicles[i].apart);
+    members_[i].vehicle.seed = content.vehicles[i].seed;
+    members_[i].warnings = content.vehicles[i].warnings;
+    if (content.vehicles[i].apart) {
+      simulate_apart(i).restore(*content.vehicles[i].apart);
     } else {
-      come_back(i);
+      return_to_lanes(i);
     }
   }
 }

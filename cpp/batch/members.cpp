@@ -24,7 +24,7 @@ bool are_built_alike(const BatchVehicle& a, const BatchVehicle& b) {
   return a.model == b.model && a.parameters == b.parameters;
 }
 
-void put(const VehicleState& state, double* row) {
+void write_state(const VehicleState& state, double* row) {
   row = std::copy_n(state.position.data(), 3, row);
   row = std::copy_n(state.orientation.coeffs().data(), 4, row);
   row = std::copy_n(state.linear_velocity.data(), 3, row);
@@ -33,7 +33,7 @@ void put(const VehicleState& state, double* row) {
   std::copy_n(state.rotor_angle.data(), state.rotor_angle.size(), row);
 }
 
-VehicleState taken(const double* row, Eigen::Index rotors) {
+VehicleState read_state(const double* row, Eigen::Index rotors) {
   VehicleState state;
   state.position = Eigen::Map<const Vector3d>(row);
   state.orientation.coeffs() = Eigen::Map<const Eigen::Vector4d>(row + 3);
@@ -52,9 +52,9 @@ void check(const VehicleState& state, std::size_t vehicle) {
   }
 }
 
-void Member::hear(const std::vector<std::string>& said) {
+void Member::add_warnings(const std::vector<std::string>& added) {
   const auto what = [](const std::string& warning) { return warning.substr(warning.find(':')); };
-  for (const std::string& warning : said) {
+  for (const std::string& warning : added) {
     const auto of_flight = warnings.begin() + static_cast<std::ptrdiff_t>(warned_at_load);
     const bool is_known = std::any_of(of_flight, warnings.end(), [&](const std::string& other) {
       return what(other) == what(warning);
@@ -101,40 +101,40 @@ void Common::check(const double* commands, std::size_t vehicles) const {
   }
 }
 
-Crew make_crew(std::vector<BatchVehicle> vehicles, Common& common) {
+Members make_members(std::vector<BatchVehicle> vehicles, Common& common) {
   if (vehicles.empty()) throw InputError("the batch has no vehicle. Give it at least one.");
-  Crew crew{std::vector<Member>(vehicles.size()), {}};
+  Members all{std::vector<Member>(vehicles.size()), {}};
   std::shared_ptr<const LaneVehicle> first;
   std::unique_ptr<Simulation> made;  // of the previous vehicle, if it is in the lanes
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    Member& member = crew.members[i];
-    member.made_of = std::move(vehicles[i]);
-    if (made && are_built_alike(member.made_of, crew.members[i - 1].made_of)) {
-      made->set_state(at_rest(member.made_of.spawn, common.rotors()));
-      crew.in_lanes.push_back(crew.in_lanes.back());
-      member.sensors = crew.members[i - 1].sensors;
+    Member& member = all.members[i];
+    member.vehicle = std::move(vehicles[i]);
+    if (made && are_built_alike(member.vehicle, all.members[i - 1].vehicle)) {
+      made->set_state(at_rest(member.vehicle.spawn, common.rotors()));
+      all.in_lanes.push_back(all.in_lanes.back());
+      member.sensors = all.members[i - 1].sensors;
     } else {
-      made = common.simulate(member.made_of);
+      made = common.simulate(member.vehicle);
       common.check(i, *made);
       std::optional<LaneVehicle> kind = lane_vehicle(*made);
       const bool fits = kind && (!first || fit(*kind, *first));
-      crew.in_lanes.push_back(fits ? std::make_shared<const LaneVehicle>(*std::move(kind))
-                                   : nullptr);
+      all.in_lanes.push_back(fits ? std::make_shared<const LaneVehicle>(*std::move(kind))
+                                  : nullptr);
       if (fits) {
         member.sensors = std::make_shared<const std::vector<LaneSensor>>(list_lane_sensors(*made));
       }
-      if (!first) first = crew.in_lanes.back();
+      if (!first) first = all.in_lanes.back();
     }
     member.warned_at_load = made->warnings().size();
     member.warnings = made->warnings();
-    member.in_lanes = crew.in_lanes.back() != nullptr;
+    member.in_lanes = all.in_lanes.back() != nullptr;
     if (member.in_lanes) {
       member.start = made->snapshot().engine;
     } else {
       member.apart = std::move(made);
     }
   }
-  return crew;
+  return all;
 }
 
 }  // namespace quadcore::batch

@@ -11,7 +11,7 @@ namespace quadcore::batch {
 
 /// A vehicle of a batch, without its motion in the lanes.
 struct Member {
-  BatchVehicle made_of;
+  BatchVehicle vehicle;
   bool in_lanes = false;
   std::vector<double> start;  ///< in the lanes: initial state as saved by the engine
   std::shared_ptr<const std::vector<LaneSensor>>
@@ -22,7 +22,7 @@ struct Member {
   std::size_t warned_at_load = 0;
 
   /// Add warnings of the flight, without repetitions.
-  void hear(const std::vector<std::string>& said);
+  void add_warnings(const std::vector<std::string>& added);
 };
 
 /// Common properties of all vehicles of a batch.
@@ -53,16 +53,16 @@ class Common {
 bool are_built_alike(const BatchVehicle& a, const BatchVehicle& b);
 
 /// Convert to and from a row of Batch::get_state().
-void put(const VehicleState& state, double* row);
-VehicleState taken(const double* row, Eigen::Index rotors);
+void write_state(const VehicleState& state, double* row);
+VehicleState read_state(const double* row, Eigen::Index rotors);
 /// Throw InputError for a state that is invalid for a vehicle.
 void check(const VehicleState& state, std::size_t vehicle);
 
 /// Members, and the lane vehicle of each, null for one that is not in the lanes.
-struct Crew {
+struct Members {
   std::vector<Member> members;
   std::vector<std::shared_ptr<const LaneVehicle>> in_lanes;
 };
-Crew make_crew(std::vector<BatchVehicle> vehicles, Common& common);
+Members make_members(std::vector<BatchVehicle> vehicles, Common& common);
 
 }  // namespace quadcore::batch

@@ -61,12 +61,17 @@ class Lock {
     if (guarded.busy.exchange(true)) refuse_another_thread();
   }
   /// Lock for functions that only the run may use during a run.
-  Lock(Guarded& guarded, const char* call) : Lock((refuse_in_flight(guarded, call), guarded)) {}
+  Lock(Guarded& guarded, const char* call) : Lock(not_in_flight(guarded, call)) {}
   ~Lock() { guarded_.busy = false; }
   Lock(const Lock&) = delete;
   Lock& operator=(const Lock&) = delete;
 
  private:
+  static Guarded& not_in_flight(Guarded& guarded, const char* call) {
+    refuse_in_flight(guarded, call);
+    return guarded;
+  }
+
   Guarded& guarded_;
 };
 
