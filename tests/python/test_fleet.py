@@ -113,6 +113,34 @@ def test_a_vehicle_of_a_fleet_is_advanced_by_the_fleet_only():
     assert fleet.names == ["quadrotor"]
 
 
+@pytest.mark.parametrize(
+    "control", [{}, {"controller": "geometric", "reference": "hover"}], ids=str
+)
+def test_progress_ends_with_the_last_step(control):
+    reports = {}
+    makers = {"fleet": lambda: quiet_fleet(make_vehicle(5)), "vehicle": lambda: make_vehicle(5)}
+    for name, make in makers.items():
+        of_one = reports[name] = []
+        make().run(0.02, progress=lambda *report, into=of_one: into.append(report), **control)
+    assert reports["fleet"][-1] == reports["vehicle"][-1] == (20, 20)
+
+
+def test_a_vehicle_of_a_fleet_has_the_time_of_the_fleet():
+    vehicle = make_vehicle(5)
+    fleet = quiet_fleet(vehicle, make_vehicle(9))
+    fleet.step(20)
+    state = vehicle.state.copy()
+    state.position = [1, 2, 3]
+    state.time = 100
+    with pytest.raises(qc.InputError, match=r"time is 100, but its fleet is at 0\.02 s\. Set "):
+        vehicle.set_state(state)
+    assert vehicle.state.position[0] == 0
+    state.time = fleet.time
+    vehicle.set_state(state)
+    assert vehicle.state.position.tolist() == [1, 2, 3]
+    assert {each.time for each in fleet.vehicles.values()} == {fleet.time}
+
+
 def test_vehicles_of_different_worlds_form_no_fleet():
     with pytest.raises(qc.InputError, match=r"vehicle 'quadrotor_2': its world is not that"):
         qc.Fleet([make_vehicle(5), make_vehicle(9, world="default.world")])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any, List, Optional, Sequence
@@ -10,10 +9,16 @@ from typing import Any, List, Optional, Sequence
 from .. import _core
 from ..support import interrupts
 from .commands import CommandsLike, check_commands
-from .flight import Pilot, Progress, Receive, check_log_every, close_at_end, count_steps
-
-_PIECE = 0.02  # s; interval between checks of progress and Ctrl-C
-_ROWS = 4096  # maximum number of rows in a piece
+from .flight import (
+    Pace,
+    Pilot,
+    Progress,
+    Receive,
+    advance_in_pieces,
+    check_log_every,
+    close_at_end,
+    count_steps,
+)
 
 
 @dataclass
@@ -73,12 +78,7 @@ def fly_fleet(
         for flight in flights:
             stack.enter_context(_core.Run(flight.simulation))
         seats = [_Seat(flight, log_every) for flight in flights]
-        try:
-            _advance(fleet, seats, total, _ROWS * log_every, progress)
-        finally:
-            with interrupts.hold_signals():
-                for seat in seats:
-                    seat.hand_over()
+        _advance(fleet, seats, total, log_every, progress)
 
 
 class _Seat:
@@ -125,24 +125,23 @@ def _advance(
     fleet: _core.Fleet,
     seats: List[_Seat],
     total: int,
-    most: int,
+    log_every: int,
     progress: Optional[Progress],
 ) -> None:
-    """Simulate `total` steps, and pass on the rows every few hundredths of a second."""
+    """Simulate `total` steps in pieces, and pass on the rows of all vehicles."""
     flights = [seat.core for seat in seats]
-    done, rows_at, reported = 0, 0, time.perf_counter()
-    while done < total:
-        steps = min(total - done, most)
-        for seat in seats:
-            steps = min(steps, seat.prepare(steps))
-        fleet._advance(steps, flights)
-        done += steps
-        now = time.perf_counter()
-        if now - reported < _PIECE and done - rows_at < most:
-            continue
-        reported, rows_at = now, done
+
+    def advance(steps: int) -> None:
+        while steps > 0:
+            now = steps
+            for seat in seats:
+                now = min(now, seat.prepare(now))
+            fleet._advance(now, flights)
+            steps -= now
+
+    def hand_over() -> None:
         with interrupts.hold_signals():
             for seat in seats:
                 seat.hand_over()
-        if progress is not None:
-            progress(done, total)
+
+    advance_in_pieces(total, log_every, advance, hand_over, progress, Pace(0, fleet.dt))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Callable, Iterator, List, Optional, Sequence, Tuple
 
@@ -120,11 +121,8 @@ def fly(
         with run:
             to_fill = 0 if pilot is None else len(pilot.columns)
             flight = _core.Flight(simulation, table, log_every, wrenches, topics, to_fill)
-            most = _ROWS * log_every
-            if pace:
-                most = max(1, min(most, int(_PACED * pace / simulation.dt)))
-            waiting = _Pace(pace, simulation.dt)
-            _advance(simulation, flight, total, most, receive, progress, pilot, waiting)
+            clock = Pace(pace, simulation.dt)
+            _advance(simulation, flight, total, log_every, receive, progress, pilot, clock)
 
 
 def check_run(
@@ -138,7 +136,7 @@ def check_run(
     return count_steps(duration, simulation.dt), check_log_every(log_every)
 
 
-class _Pace:
+class Pace:
     """Clock that limits a flight to the pace of wall-clock time."""
 
     def __init__(self, pace: float, dt: float) -> None:
@@ -147,6 +145,10 @@ class _Pace:
 
     def __bool__(self) -> bool:
         return self._seconds_per_step > 0
+
+    def limit(self, steps: int) -> int:
+        """Return a number of steps, or fewer if they take longer than the longest piece."""
+        return max(1, min(steps, int(_PACED / self._seconds_per_step))) if self else steps
 
     def wait(self, steps: int) -> None:
         """Wait until the given number of steps is due."""
@@ -175,13 +177,13 @@ def _advance(
     simulation: _core.Simulation,
     flight: _core.Flight,
     total: int,
-    most: int,
+    log_every: int,
     receive: Receive,
     progress: Optional[Progress],
     pilot: Optional[Pilot],
-    pace: _Pace,
+    pace: Pace,
 ) -> None:
-    """Simulate `total` steps in pieces, and pass on the rows of at most `most` steps at a time."""
+    """Simulate `total` steps in pieces, and pass on their rows."""
     advance = flight.advance if pilot is None else pilot.begin(simulation, flight)
 
     def hand_over() -> None:
@@ -193,6 +195,30 @@ def _advance(
             finally:  # the states are valid even if the columns of the pilot are not
                 receive(table, wrenches)
 
+    act = partial(_call_with_time, simulation, advance)
+    advance_in_pieces(total, log_every, act, hand_over, progress, pace)
+
+
+def advance_in_pieces(
+    total: int,
+    log_every: int,
+    advance: Callable[[int], None],
+    hand_over: Callable[[], None],
+    progress: Optional[Progress],
+    pace: Pace,
+) -> None:
+    """Simulate `total` steps, with a look at the clock every few hundredths of a second.
+
+    Parameters
+    ----------
+    advance
+        Function that simulates a number of steps.
+    hand_over
+        Function that passes on the new rows. It is also called at the end, even after an error.
+    log_every, progress, pace
+        As for `fly`, with a clock for the pace. The last report of progress is that of the last step.
+    """
+    most = pace.limit(_ROWS * log_every)
     done, steps, last_report = 0, 1, 0.0
     rows_at, handed_over = 0, time.perf_counter()
     try:
@@ -204,7 +230,7 @@ def _advance(
                 rows_at, handed_over = done, time.perf_counter()
             pace.wait(done)
             started = time.perf_counter()
-            _call_with_time(simulation, advance, steps)
+            advance(steps)
             done += steps
             now = time.perf_counter()
             if now - started < _PIECE:

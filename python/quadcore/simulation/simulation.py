@@ -17,7 +17,7 @@ from ..control.references import ReferenceLike
 from ..control.vehicle import Vehicle
 from ..model.description import check_names_argument, read_both
 from ..model.overrides import apply_link_values, check_names, split_xacro_arguments
-from ..support.arguments import PROGRESS, check, or_none
+from ..support.arguments import PROGRESS, check, or_none, shorten
 from ..support.rotation import to_roll_pitch_yaw
 from ..support.values import SPAWN, Number, Value, check_pose, check_whole, format_value
 from ..support.warning import warn
@@ -141,6 +141,28 @@ class Simulation(_core.Simulation):
     def vehicle(self) -> Vehicle:
         """View of the vehicle as arrays, as controllers receive it in studies."""
         return Vehicle(self)
+
+    def set_state(self, state: Union[State, LiveState]) -> None:
+        """Move the vehicle into a state; what plugins remember stays.
+
+        Parameters
+        ----------
+        state : State
+            State, as `state.copy()` returns it, or an object with the same members.
+
+        Raises
+        ------
+        InputError
+            If members have other sizes, a number is not finite, a quaternion has no direction, or
+            the time is not that of the vehicle's fleet. Nothing changes.
+        """
+        time = getattr(state, "time", self.time)
+        if self.in_fleet and time != self.time:
+            raise _core.InputError(
+                f"set_state(): the state's time is {shorten(time)}, but its fleet is at "
+                f"{self.time:g} s. Set it to the time of the vehicle."
+            )
+        super().set_state(state)
 
     def restore(  # type: ignore[override]  # pybind11 2.4 has no keyword-only arguments
         self, snapshot: _core.Snapshot, *, allow: Sequence[str] = ()
