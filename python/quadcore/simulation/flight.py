@@ -216,7 +216,7 @@ def advance_in_pieces(
     hand_over
         Function that passes on the new rows. It is also called at the end, even after an error.
     log_every, progress, pace
-        As for `fly`, with a clock for the pace. The last report of progress is that of the last step.
+        As for `fly`, with a clock for the pace. The last step reports its progress, too.
     """
     most = pace.limit(_ROWS * log_every)
     done, steps, last_report = 0, 1, 0.0
