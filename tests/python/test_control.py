@@ -274,7 +274,7 @@ def reference_without(member, index):
 )
 def test_a_reference_that_is_not_finite_ends_the_flight_and_is_named(controller, member, index):
     sim = qc.Simulation("quadrotor", "eigen", xacro_args={"sim_slow": 1})
-    with pytest.raises(qc.QuadcoreError, match=f"reference.{member} is not finite") as failed:
+    with pytest.raises(qc.QuadcoreError, match=rf"reference\.{member} is not finite") as failed:
         sim.run(1.0, controller=controller, reference=reference_without(member, index))
     assert sim.time == pytest.approx(0.2, abs=0.02)  # the next call
     assert len(failed.value.log) > 100

@@ -23,9 +23,9 @@ class ReferencePreview {
  public:
   /// A point of the reference.
   struct Point {
-    double time;       ///< s
-    Reference wanted;  ///< reference at this time
-    elementary::SineCosine of_yaw;
+    double time;                    ///< s
+    Reference wanted;               ///< reference at this time
+    elementary::SineCosine of_yaw;  ///< sine and cosine of its yaw
     /// Table that contains its flat state until the next points are computed; null if the
     /// controller uses none or it is undefined.
     const FlatTable* flat;
