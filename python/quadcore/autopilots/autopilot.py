@@ -45,7 +45,7 @@ class Autopilot:
     hold : float, default 0
         Duration of the phase before the flight, s, at most `MAX_HOLD`.
     where : mapping of str to str, default {}
-        Locations of the values in a stack file, for messages: ``FILE:LINE: `` by name.
+        Locations of the values in a stack file, for messages: ``FILE:LINE:`` by name.
 
     Attributes
     ----------
