@@ -13,7 +13,8 @@ void Batch::Implementation::follow(const std::vector<BatchGuide>& guides,
   check_start(guided);
   check_guides(guides);
   batch::SharedPoll shared_poll(poll);
-  for_each_block([&](std::size_t block, std::size_t first, std::size_t end, double* work) {
+  const auto follow_block = [&](std::size_t block, std::size_t first, std::size_t end,
+                                double* work) {
     std::vector<batch::Follower> followers;
     std::vector<std::size_t> apart;
     for (std::size_t i = first; i < end; ++i) {
@@ -34,7 +35,8 @@ void Batch::Implementation::follow(const std::vector<BatchGuide>& guides,
     for (const std::size_t i : apart) {
       follow_apart(i, guides[i], odometry, steps, log_every, guided[i], shared_poll);
     }
-  });
+  };
+  for_each_block(follow_block, [&] { shared_poll(); });
 }
 
 void Batch::Implementation::follow_in_lanes(std::size_t block, double* work,

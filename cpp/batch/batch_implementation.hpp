@@ -67,15 +67,21 @@ class Batch::Implementation {
   const double* command_of(std::size_t i) const { return &commands_[i * command_width()]; }
 
   /// Call work(block, first vehicle, end of the vehicles, work memory) from several threads.
-  template <class Work>
-  void for_each_block(const Work& work) const {
-    side_by_side(threads_, lanes_->blocks(), [&](std::size_t begin, std::size_t end) {
+  /// \param poll  see side_by_side()
+  template <class Work, class Poll>
+  void for_each_block(const Work& work, const Poll& poll) const {
+    const auto fly = [&](std::size_t begin, std::size_t end) {
       LaneNumbers room(lanes_->work_size());
       for (std::size_t block = begin; block < end; ++block) {
         const std::size_t first = block * widest_lanes;
         work(block, first, std::min(size(), first + widest_lanes), room.data());
       }
-    });
+    };
+    side_by_side(threads_, lanes_->blocks(), fly, poll);
+  }
+  template <class Work>
+  void for_each_block(const Work& work) const {
+    for_each_block(work, [] {});
   }
 
   void begin(std::size_t i);

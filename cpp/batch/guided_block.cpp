@@ -72,6 +72,7 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n, std:
                           SharedPoll& poll) {
   for (Follower& follower : followers) add(follower);
   const auto has_log = [](const Follower& follower) { return follower.guided->log != nullptr; };
+  const auto flies = [](const Follower& follower) { return !follower.has_left; };
   if (std::none_of(followers.begin(), followers.end(), has_log)) log_every = std::max(n, log_every);
   std::int64_t step = 0, next_poll = 0;
   lanes_.show(block_, work_);
@@ -87,7 +88,7 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n, std:
     }
   };
   try {
-    while (step < n) {
+    while (step < n && std::any_of(followers.begin(), followers.end(), flies)) {
       if (step >= next_poll) {
         poll();
         next_poll = step + steps_between_polls;

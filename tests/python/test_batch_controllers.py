@@ -236,3 +236,15 @@ def test_a_long_run_can_be_interrupted_and_continued(alarm, engine, n, controlle
     np.testing.assert_array_equal(before, sim.state.position)
     sim.step(20)
     np.testing.assert_array_equal(batch.state.position[last], sim.state.position)
+
+
+def test_a_run_is_interrupted_while_the_calling_thread_waits_for_the_others(alarm):
+    """The vehicles of that thread, the first eight, fail at once."""
+    references = ["hover:height=1e9"] * 8 + ["spiral"] * 16
+    free = {"sim_slow": 1, "max_velocity": 1e12}
+    batch = qc.BatchSimulation("quadrotor", 24, threads=2, xacro_args=free)
+    alarm(0.5)
+    with pytest.raises(KeyboardInterrupt):
+        batch.run(1e6, controller="pd", reference=references)
+    assert batch.failed.tolist() == [True] * 8 + [False] * 16
+    assert 0 < batch.time.max() < 1e5
