@@ -56,14 +56,15 @@ struct CascadeFormulas {
 
   /// Return how far roll, pitch and yaw are from those of (2.46), (2.47) or (2.53), (2.54), with
   /// the measured yaw [rad]. The wanted pitch is that of the whole turn, which makes a demand
-  /// beyond free fall turn the vehicle over instead of reversing the demand.
+  /// beyond free fall turn the vehicle over instead of reversing the demand. Without a demand, a
+  /// level vehicle is wanted.
   QUADCORE_LAW Vec3<T> angle_errors(const EulerAngles<T>& now, const Vec3<T>& lift_W) const {
     const T ahead = lift_W.x * now.yaw.cos + lift_W.y * now.yaw.sin,
             right = lift_W.x * now.yaw.sin - lift_W.y * now.yaw.cos;
-    const T without_roll = laws::square_root(ahead * ahead + lift_W.z * lift_W.z);
+    const T up = laws::chosen_by(dot(lift_W, lift_W) == 0.0, laws::broadcast<T>(1), lift_W.z);
+    const T without_roll = laws::square_root(ahead * ahead + up * up);
     const Vec3<T>& across_W = input.wanted.across_W;
-    return {angle_between(now.roll, {right, without_roll}),
-            angle_between(now.pitch, {ahead, lift_W.z}),
+    return {angle_between(now.roll, {right, without_roll}), angle_between(now.pitch, {ahead, up}),
             angle_between(now.yaw, {-across_W.x, across_W.y})};
   }
 

@@ -32,8 +32,10 @@ template <class T>
 struct EulerAngles {
   SineCosine<T> roll, pitch, yaw;
 
+  /// The least square of the cosine of the pitch has the size of its rounding errors, so that
+  /// by_inverse_W() stays finite.
   explicit QUADCORE_LAW EulerAngles(const Matrix3<T>& R_WF)
-      : pitch{-R_WF.zx, laws::square_root(R_WF.zy * R_WF.zy + R_WF.zz * R_WF.zz)} {
+      : pitch{-R_WF.zx, laws::square_root(R_WF.zy * R_WF.zy + R_WF.zz * R_WF.zz + 1e-32)} {
     const laws::RollAndYaw<T> others = laws::roll_and_yaw(R_WF);
     roll = normalised(others.roll);
     yaw = normalised(others.yaw);
@@ -44,7 +46,7 @@ struct EulerAngles {
     return {a.x - pitch.sin * a.z, roll.cos * a.y + roll.sin * pitch.cos * a.z,
             roll.cos * pitch.cos * a.z - roll.sin * a.y};
   }
-  /// Return the inverse of W times a vector; infinite or NaN at a pitch of 90 degrees.
+  /// Return the inverse of W times a vector; huge at a pitch of 90 degrees, where W is singular.
   QUADCORE_LAW Vec3<T> by_inverse_W(const Vec3<T>& a) const {
     const T of_yaw = (roll.sin * a.y + roll.cos * a.z) / pitch.cos;
     return {a.x + pitch.sin * of_yaw, roll.cos * a.y - roll.sin * a.z, of_yaw};

@@ -289,3 +289,30 @@ def test_a_state_that_is_not_finite_is_no_state_for_a_controller(controller):
     state.linear_velocity[1] = np.inf
     with pytest.raises(qc.InputError, match=r"state\.linear_velocity is not finite"):
         law.core.command(0.01, state, qc.Reference())
+
+
+@pytest.mark.parametrize("controller", ["pd", "pd_compensated", "pid"])
+@pytest.mark.parametrize("orientation", [(0.5, 0.5, -0.5, 0.5), (0.5, -0.5, 0.5, 0.5)])
+def test_a_cascade_commands_a_vehicle_whose_pitch_is_exactly_90_degrees(controller, orientation):
+    sim = qc.Simulation("quadrotor", "eigen", xacro_args={"sim_slow": 1})
+    state = sim.state.copy()
+    state.orientation = np.array(orientation)
+    sim.set_state(state)
+    log = sim.run(0.05, controller=controller, reference="hover:height=20")
+    assert np.isfinite(log.table).all()
+
+
+@pytest.mark.parametrize("controller", ["pd", "pid"])
+def test_a_cascade_levels_the_vehicle_where_no_force_is_demanded(controller):
+    """As it does where almost none is demanded: the gain is 1/s^2, and z is g too high."""
+    commands = []
+    for height in (0.0, 1e-9):
+        sim = qc.Simulation("quadrotor", "eigen", xacro_args={"sim_slow": 1})
+        law = qc.controllers.parse(f"{controller}:kp_z=1,ki_z=0", "quadrotor")
+        law.reset(sim)
+        state = sim.state.copy()
+        state.position = np.array([0, 0, 9.8])
+        state.orientation = np.array([np.sin(0.3), 0, 0, np.cos(0.3)])
+        commands.append(law.core.command(0.01, state, qc.Reference(position=[0, 0, height])))
+    np.testing.assert_allclose(commands[0], commands[1], atol=1.0)
+    assert np.abs(commands[0]).max() > 100
