@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from functools import partial
 from pathlib import Path
 
@@ -27,7 +29,7 @@ def test_drawings_are_bit_identical_for_any_number_of_processes():
 
 def test_a_process_that_dies_while_it_draws_is_an_error_and_so_is_a_figure_that_cannot_be_made():
     figures = {"one": lambda: panels("one", 1)[0], "other": partial(os._exit, 7)}
-    with pytest.raises(QuadcoreError, match="its process ended with status 7"):
+    with pytest.raises(QuadcoreError, match=r"figure 'other': its process ended with status 7"):
         draw_figures(figures, 2)
     with pytest.raises(RuntimeError, match="division by zero"):
         draw_figures({**figures, "other": lambda: 1 / 0}, 2)
@@ -40,7 +42,7 @@ def test_the_summary_of_a_run_is_printed_before_its_figures_are_drawn(
         raise QuadcoreError("cannot draw")
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("quadcore.studies.figures.draw_figures", fail)
+    monkeypatch.setattr("quadcore.report.log_plots.draw", fail)
     assert main(RUN) == 2
     printed = capsys.readouterr()
     assert "final position" in printed.out and "written" not in printed.out
@@ -49,13 +51,16 @@ def test_the_summary_of_a_run_is_printed_before_its_figures_are_drawn(
 
 
 @pytest.mark.parametrize("more", [[], ["--model", "quadrotor"]])
-def test_a_reader_that_needs_no_summary_still_gets_the_files(tmp_path, monkeypatch, more):
-    def end(*_):
-        raise BrokenPipeError
-
-    monkeypatch.chdir(tmp_path)
-    for command in ("run", "run_fleet"):
-        monkeypatch.setattr(f"quadcore.cli.{command}.print_result", end)
-    monkeypatch.setattr("quadcore.cli.terminal.discard_output", lambda: None)
-    assert main([word for word in RUN if not more or word != "quadrotor"] + more) == 0
-    assert Path("out/report.html").exists() and list(Path("out").rglob("position.png"))
+def test_a_reader_that_has_ended_still_gets_the_files(tmp_path, more):
+    """With standard output in a buffer, as it is unless PYTHONUNBUFFERED is set."""
+    words = [word for word in RUN if not more or word != "quadrotor"] + more
+    read, write = os.pipe()
+    os.close(read)
+    environment = {key: x for key, x in os.environ.items() if key != "PYTHONUNBUFFERED"}
+    command = [sys.executable, "-m", "quadcore", *words, "--controller", "pd"]
+    done = subprocess.run(
+        command, cwd=tmp_path, stdout=write, stderr=subprocess.PIPE, env=environment
+    )
+    os.close(write)
+    assert done.returncode == 0 and b"rror" not in done.stderr
+    assert list(tmp_path.rglob("report.html")) and list(tmp_path.rglob("position.png"))

@@ -148,11 +148,10 @@ def _run(arguments: argparse.Namespace) -> None:
     result = vehicle.summarize(elapsed)
     rows = describe_result(result)
     is_shown = not (arguments.json or arguments.quiet)
-    try:
-        if is_shown:
-            print_result(rows)  # plots and page take longer than the flight
-    finally:  # also if the reader of the summary, such as `head`, needs no more
-        files = vehicle.write_results(logs, rows)
+    if is_shown:
+        with terminal.discard_if_unread():
+            print_result(rows)  # before plots and page, which take longer than the flight
+    files = vehicle.write_results(logs, rows)
     if is_shown:
         print_files(files, rows)
     elif arguments.json:

@@ -154,12 +154,12 @@ def _fly(fleet: Fleet, flown: Dict[str, RunVehicle], out: Optional[Path]) -> Non
             results[name]["unsimulated"] = unsimulated
     rows = {name: describe_result(result) for name, result in results.items()}
     is_shown = not (first.arguments.json or first.arguments.quiet)
-    try:
-        for name in flown if is_shown else ():
-            print_result(rows[name], name)  # plots and pages take longer than the flight
-    finally:  # also if the reader of the summaries, such as `head`, needs no more
-        files = {name: flown[name].write_results(logs[name], rows[name]) for name in flown}
-        shared = [] if out is None else _write_shared(out, flown, rows)
+    if is_shown:
+        with terminal.discard_if_unread():
+            for name in flown:  # before plots and pages, which take longer than the flight
+                print_result(rows[name], name)
+    files = {name: flown[name].write_results(logs[name], rows[name]) for name in flown}
+    shared = [] if out is None else _write_shared(out, flown, rows)
     if is_shown:
         terminal.print_written([*itertools.chain(*files.values()), *shared])
     elif first.arguments.json:

@@ -6,11 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Dict, List, Mapping, Sequence, Tuple
 
-from ..control.built_in import BuiltInController
-from ..control.references import Shape
 from ..model.obstacles import draw_world
 from ..model.visuals import read_vehicle
-from ..report.drawing import Drawing, name_files, save_drawings
+from ..report.drawing import Drawing, name_files
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
@@ -68,19 +66,10 @@ def _describe_conditions(plan: FlightPlan, summary: Mapping[str, str]) -> str:
     return "; ".join([*parts, step, f"seed {plan.seed}"]) + "."
 
 
-def _draw(arguments: argparse.Namespace, plan: FlightPlan, log: Log) -> Dict[str, Drawing]:
-    # matplotlib and multiprocessing are slow to import.
-    from ..report.log_plots import list_figures
-    from ..studies.figures import draw_figures
+def _draw(log: Log, folder: Path) -> Dict[str, Drawing]:
+    from ..report.log_plots import draw  # matplotlib is slow to import
 
-    # User code and live views may have threads, which forked processes would lack.
-    is_alone = not arguments.live and all(
-        thing is None or isinstance(thing, built_in)
-        for thing, built_in in ((plan.controller, BuiltInController), (plan.reference, Shape))
-    )
-    drawings = draw_figures(list_figures(log), None if is_alone else 1)
-    save_drawings(arguments.out, drawings)
-    return drawings
+    return draw(log, folder)
 
 
 def write_results(
@@ -97,7 +86,7 @@ def write_results(
     log.per_command = per_command(simulation)
     name = f"{simulation.model.name}, {simulation.engine}"
     log.title = ", ".join(filter(None, (name, log.title)))
-    plots = {} if arguments.no_plots else _draw(arguments, plan, log)
+    plots = {} if arguments.no_plots else _draw(log, arguments.out)
     page = arguments.out / PAGE
     flight = PlayerFlight(
         name,

@@ -42,6 +42,15 @@ def discard_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+@contextmanager
+def discard_if_unread() -> Iterator[None]:
+    """Continue after a block that prints to a reader that has ended, such as `head`."""
+    try:
+        yield
+    except BrokenPipeError:
+        discard_output()
+
+
 def escape_controls(text: str) -> str:
     """Escape control characters, which file names may contain."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Sequence, Tuple
 
@@ -36,8 +35,29 @@ _PLACES = ("x (m)", "y (m)", "z (m)")
 _ANGLES = ("roll (deg)", "pitch (deg)", "yaw (deg)")
 
 
-def list_figures(log: Trajectory) -> dict[str, Callable[[], Figure]]:
-    """List the figures of a flight, as functions that make them, by name."""
+def draw(log: Trajectory, directory: Path, is_on_page: bool = True) -> dict[str, Drawing]:
+    """Draw every plot of a flight into a folder, which is made if missing.
+
+    Parameters
+    ----------
+    log
+        Log of the flight.
+    directory
+        Folder of the files.
+    is_on_page
+        Whether a page will show the drawings.
+
+    Returns
+    -------
+    dict of str to Drawing
+        Drawings by name; their files are written.
+
+    Raises
+    ------
+    InputError
+        If the folder or a file cannot be written.
+    """
+    make_folder(directory)
     plots: dict[str, Callable[[Trajectory], Figure]] = {
         "position": _draw_position,
         "attitude": _draw_attitude,
@@ -52,33 +72,9 @@ def list_figures(log: Trajectory) -> dict[str, Callable[[], Figure]]:
         plots["error"] = _draw_error
     if has_autopilot(log):
         plots["autopilot"] = _draw_autopilot
-    return {name: partial(draw_plot, log) for name, draw_plot in plots.items()}
-
-
-def draw(log: Trajectory, directory: Path) -> dict[str, Drawing]:
-    """Draw every plot of a flight into a folder, which is made if missing.
-
-    Parameters
-    ----------
-    log
-        Log of the flight.
-    directory
-        Folder of the files.
-
-    Returns
-    -------
-    dict of str to Drawing
-        Drawings by name; their files are written.
-
-    Raises
-    ------
-    InputError
-        If the folder or a file cannot be written.
-    """
-    make_folder(directory)
     drawings = {}
-    for name, make in list_figures(log).items():
-        drawings[name] = finish(make(), is_on_page=False)
+    for name, draw_plot in plots.items():
+        drawings[name] = finish(draw_plot(log), is_on_page)
         save_drawings(directory, {name: drawings[name]})
     return drawings
 

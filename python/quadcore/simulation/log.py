@@ -246,7 +246,7 @@ class Log(Trajectory):
             from ..report.log_plots import draw  # matplotlib is slow to import
 
         with use_formats(chosen):
-            drawings = draw(self, folder)
+            drawings = draw(self, folder, is_on_page=False)
         return [folder / file for name in drawings for file in name_files(name, drawings[name])]
 
     def _check_suffix(self, path: PathLike, suffix: str) -> None:

@@ -50,7 +50,7 @@ def draw_figures(
 
     def take(index: int, drawing: Union[Drawing, QuadcoreError]) -> None:
         if isinstance(drawing, QuadcoreError):
-            raise drawing
+            raise QuadcoreError(f"figure '{names[index]}': {drawing}") from drawing
         drawn[index] = drawing
 
     names = list(figures)

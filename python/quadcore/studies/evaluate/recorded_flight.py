@@ -34,7 +34,7 @@ Alignment = Union[float, str]
 _EVEN = 0.01  # relative to the row spacing; rows with larger deviations are uneven
 _GAP = 10  # in row spacings; a longer gap gives a warning
 _OVERLAP = 0.5  # minimum share of the log after the start of the reference
-_SHIFTS = 2000  # maximum number of shifts on each side in the coarse search
+_SHIFTS = 2000  # maximum number of shifts in the coarse search, both sides together
 
 
 class RecordedFlight(NamedTuple):

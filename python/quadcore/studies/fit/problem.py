@@ -15,7 +15,7 @@ from .horizons import Horizons
 
 _STEP = 1e-4  # relative step of a parameter for derivatives
 _START_STEPS = (1e-5, 1e-5, 1e-5, 1e-4, 1e-2)
-"""Steps of an initial state: position (m), rotation (rad), velocity (m/s), rates (rad/s)."""
+"""Steps of a start: position (m), rotation (rad), velocity (m/s), rates and rotors (rad/s)."""
 
 _FINEST = {"position": 1e-6, "attitude": 1e-6, "velocity": 1e-6, "rates": 1e-6, "rotors": 1e-4}
 """Minimum noise of each channel (m, rad, s), because derivatives are finite differences."""
