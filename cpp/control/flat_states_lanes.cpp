@@ -1,7 +1,6 @@
 #include "air_force.hpp"
 #include "flat_states.hpp"
 #include "jet.hpp"
-#include "lanes/inverse_root.hpp"
 #include "lanes/table.hpp"
 
 namespace quadcore::control {
@@ -54,23 +53,17 @@ QUADCORE_LAW Jet<T> force(const FlatVehicle& vehicle, const Derivatives<T>& want
           chosen(with_linear.ddx, with_both.ddx)};
 }
 
-/// Return the rotation with z of F along the force and x of F perpendicular to it and to `across`.
-/// The rates follow from the derivatives' parts along the axes (Mellinger, Kumar, ICRA 2011, sec.
-/// III): f = |f| z has the derivatives |f|' z + |f| z' and |f|'' z + 2 |f|' z' + |f| z'', where z'
-/// = w x z and z'' = w' x z + w x (w x z). The same holds for x.
 template <class T>
 QUADCORE_LAW Turning<T> turning_along(const FlatVehicle& vehicle, const Derivatives<T>& wanted,
                                       const Jet<T>& across) {
-  const Jet<T> f = force(vehicle, wanted), a = cross(across, f);
-  const T by_f = laws::inverse_root(dot(f.x, f.x)), by_a = laws::inverse_root(dot(a.x, a.x));
-  const Vec3<T> z = by_f * f.x, x = by_a * a.x, y = cross(z, x);
-  const Vec3<T> w{-(by_f * dot(y, f.dx)), by_f * dot(x, f.dx), by_a * dot(y, a.dx)};
-  const T twice_df = 2 * dot(z, f.dx), twice_da = 2 * dot(x, a.dx);
-  return {{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z},
-          w,
-          {w.y * w.z - by_f * (dot(y, f.ddx) + twice_df * w.x),
-           by_f * (dot(x, f.ddx) - twice_df * w.y) - w.z * w.x,
-           by_a * (dot(y, a.ddx) - twice_da * w.z) - w.x * w.y}};
+  const Jet<T> z = unit(force(vehicle, wanted));
+  const Jet<T> x = unit(cross(across, z));
+  const Jet<T> y = cross(z, x);
+  // R' = R [w x], hence w = (z . y', x . z', y . x').
+  return {{x.x.x, y.x.x, z.x.x, x.x.y, y.x.y, z.x.y, x.x.z, y.x.z, z.x.z},
+          {dot(z.x, y.dx), dot(x.x, z.dx), dot(y.x, x.dx)},
+          {dot(z.dx, y.dx) + dot(z.x, y.ddx), dot(x.dx, z.dx) + dot(x.x, z.ddx),
+           dot(y.dx, x.dx) + dot(y.x, x.ddx)}};
 }
 
 /// Return the derivatives of the position of the centre of mass if the origin of F follows a
@@ -119,12 +112,12 @@ QUADCORE_LAW void solve(const FlatVehicle& vehicle, double* columns) {
     a_FCcm_W = of_centre_of_mass(wanted, r_F, turning).acceleration - wanted.acceleration;
   }
   const Vec3<T> up{T{}, T{}, laws::broadcast<T>(vehicle.gravity)};
-  const Matrix3<T>& R = turning.R_WF;
-  T thrust = vehicle.mass * dot(Vec3<T>{R.xz, R.yz, R.zz}, wanted.acceleration + a_FCcm_W + up);
+  Vec3<T> exerted_W = vehicle.mass * (wanted.acceleration + a_FCcm_W + up);
   if (vehicle.with_drag) {
-    const Vec3<T> v_F = inversely(R, wanted.velocity) + cross(turning.w_WF_F, r_F);
-    thrust = thrust - air_force_F(vehicle.air, R, v_F).z;
+    const Vec3<T> v_F = inversely(turning.R_WF, wanted.velocity) + cross(turning.w_WF_F, r_F);
+    exerted_W = exerted_W - turning.R_WF * air_force_F(vehicle.air, turning.R_WF, v_F);
   }
+  const Matrix3<T>& R = turning.R_WF;
   double* const rotation = columns + FlatRow::R_WF * widest_lanes;
   store_vector(rotation, Vec3<T>{R.xx, R.yx, R.zx});
   store_vector(rotation + 3 * widest_lanes, Vec3<T>{R.xy, R.yy, R.zy});
@@ -134,7 +127,7 @@ QUADCORE_LAW void solve(const FlatVehicle& vehicle, double* columns) {
   store_vector(columns + FlatRow::w_WF_W * widest_lanes, R * turning.w_WF_F);
   store_vector(columns + FlatRow::dw_WF_W * widest_lanes, R * turning.dw_WF_F);
   store_vector(columns + FlatRow::a_FCcm_W * widest_lanes, a_FCcm_W);
-  laws::store(columns + FlatRow::thrust * widest_lanes, thrust);
+  laws::store(columns + FlatRow::thrust * widest_lanes, dot(Vec3<T>{R.xz, R.yz, R.zz}, exerted_W));
 }
 
 }  // namespace

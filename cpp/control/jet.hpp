@@ -47,8 +47,18 @@ QUADCORE_LAW ScalarJet<T> sqrt(const ScalarJet<T>& s) {
   return {root, d_root, (s.ddx / 2 - d_root * d_root) / root};
 }
 template <class T>
+QUADCORE_LAW ScalarJet<T> inverse(const ScalarJet<T>& s) {
+  const T i = 1 / s.x, di = -s.dx * i * i;
+  return {i, di, (-s.ddx * i - 2 * s.dx * di) * i};
+}
+template <class T>
 QUADCORE_LAW ScalarJet<T> norm(const Jet<T>& a) {
   return sqrt(dot(a, a));
+}
+/// Return the unit vector of a nonzero vector.
+template <class T>
+QUADCORE_LAW Jet<T> unit(const Jet<T>& a) {
+  return inverse(norm(a)) * a;
 }
 
 }  // namespace quadcore::control
