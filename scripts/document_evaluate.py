@@ -7,7 +7,8 @@ from images import save
 from noise import THESIS
 
 import quadcore as qc
-from quadcore.studies.evaluate.plots import draw
+from quadcore.studies.evaluate.plots import list_figures
+from quadcore.studies.figures import draw_figures
 
 CONTROLLERS = ["pd", "pd_compensated", "pid", "geometric", "indi", "lqr"]
 
@@ -17,7 +18,7 @@ def main() -> None:
     found = qc.evaluate(
         CONTROLLERS, "circle", seeds=20, parameters=THESIS, xacro_args={"sim_slow": 1}
     )
-    pictures = draw(found)
+    pictures = draw_figures(list_figures(found))
     for name, of in (("evaluate_errors", "errors_1"), ("evaluate_seeds", "seeds")):
         save(name, pictures[of].files["png"])
 

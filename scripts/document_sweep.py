@@ -12,9 +12,10 @@ from pathlib import Path
 from images import save
 
 from quadcore.studies.design import Design
+from quadcore.studies.figures import draw_figures
 from quadcore.studies.options import SweepOptions
 from quadcore.studies.sweep.plan import Plan
-from quadcore.studies.sweep.plots import draw
+from quadcore.studies.sweep.plots import list_figures
 from quadcore.studies.sweep.sensitivity import compute_sensitivities
 from quadcore.studies.sweep.sweep import fly_plan
 from quadcore.studies.sweep.table import make_table
@@ -33,7 +34,8 @@ def main() -> None:
     plan = Plan(design, "geometric", "circle", ["eigen"], ["quadrotor"], options)
     with tempfile.TemporaryDirectory() as folder:
         columns = make_table(fly_plan(plan, Path(folder)))
-    pictures = draw(plan, columns, compute_sensitivities(plan, columns), "rms_position")
+    figures = list_figures(plan, columns, compute_sensitivities(plan, columns), "rms_position")
+    pictures = draw_figures({"surface": figures["surface"]})
     save("sweep_surface", pictures["surface"].files["png"])
 
 
