@@ -1,4 +1,5 @@
 #include "batch_implementation.hpp"
+#include "finally.hpp"
 #include "quadcore/control/guided_controller.hpp"
 #include "quadcore/control/schedule.hpp"
 #include "quadcore/plugin/error.hpp"
@@ -44,6 +45,9 @@ void Batch::Implementation::follow_in_lanes(std::size_t block, double* work,
                                             std::int64_t steps, std::int64_t log_every,
                                             batch::SharedPoll& poll) {
   if (followers.empty()) return;
+  const auto advance = [&] {
+    batch::GuidedBlock(*lanes_, block, dt(), work).advance(followers, steps, log_every, poll);
+  };
   const auto finish = [&] {
     for (const batch::Follower& follower : followers) {
       steps_[follower.vehicle] += follower.steps;
@@ -51,13 +55,7 @@ void Batch::Implementation::follow_in_lanes(std::size_t block, double* work,
       note_command(follower.vehicle, follower.speeds.data());
     }
   };
-  try {
-    batch::GuidedBlock(*lanes_, block, dt(), work).advance(followers, steps, log_every, poll);
-  } catch (...) {
-    finish();
-    throw;
-  }
-  finish();
+  batch::finally(advance, finish);
 }
 
 void Batch::Implementation::follow_together(const CommandAll& command_all, double rate,
@@ -115,6 +113,13 @@ void Batch::Implementation::follow_apart(std::size_t i, const BatchGuide& guide,
     if (is_commanded_[i]) simulation.command(command_of(i), command_width());
   }
   guided = BatchGuided{guided.log};
+  const auto advance = [&] {
+    try {
+      batch::follow_apart(simulation, guide, odometry, steps, log_every, guided, poll);
+    } catch (const FlightError& error) {
+      failures_[i] = error.what();
+    }
+  };
   const auto finish = [&] {
     const Topics& topics = simulation.topics();
     const Topic& commands = topics[topics.at(Simulation::command_topic)];
@@ -122,15 +127,7 @@ void Batch::Implementation::follow_apart(std::size_t i, const BatchGuide& guide,
     store_simulation(i);
     if (members_[i].in_lanes) lanes_->command(i, command_of(i));
   };
-  try {
-    batch::follow_apart(simulation, guide, odometry, steps, log_every, guided, poll);
-  } catch (const FlightError& error) {
-    failures_[i] = error.what();
-  } catch (...) {
-    finish();
-    throw;
-  }
-  finish();
+  batch::finally(advance, finish);
 }
 
 void Batch::Implementation::note_command(std::size_t i, const double* speeds) {
@@ -159,11 +156,14 @@ std::uint64_t Batch::Implementation::seed_of(std::size_t i, const batch::LaneSen
   return sensor.sensor.seed.value_or(seed);
 }
 
+void Batch::Implementation::check_count(std::size_t count, const std::string& what) const {
+  if (count == size()) return;
+  throw InputError("there are " + std::to_string(count) + " " + what + " for " +
+                   std::to_string(size()) + " vehicles. Give one for each vehicle.");
+}
+
 void Batch::Implementation::check_start(const std::vector<BatchGuided>& guided) const {
-  if (guided.size() != size()) {
-    throw InputError("there are " + std::to_string(guided.size()) + " flights for " +
-                     std::to_string(size()) + " vehicles. Give one for each vehicle.");
-  }
+  check_count(guided.size(), "flights");
   for (std::size_t i = 0; i < size(); ++i) {
     if (steps_[i] == 0 && placements_[i] >= 0) continue;
     throw InputError("vehicle " + std::to_string(i) +
@@ -172,10 +172,7 @@ void Batch::Implementation::check_start(const std::vector<BatchGuided>& guided) 
 }
 
 void Batch::Implementation::check_guides(const std::vector<BatchGuide>& guides) const {
-  if (guides.size() != size()) {
-    throw InputError("there are " + std::to_string(guides.size()) + " controllers for " +
-                     std::to_string(size()) + " vehicles. Give one for each vehicle.");
-  }
+  check_count(guides.size(), "controllers");
   for (std::size_t i = 0; i < size(); ++i) {
     const std::size_t rotors = guides[i].controller->rotors();
     if (rotors == command_width()) continue;

@@ -115,6 +115,8 @@ class Batch::Implementation {
 
   std::uint64_t seed_of(std::size_t i, const batch::LaneSensor& sensor) const;
 
+  /// Throw InputError unless there are as many of something as vehicles.
+  void check_count(std::size_t count, const std::string& what) const;
   /// Throw InputError unless every vehicle is at its start and has a row of results.
   void check_start(const std::vector<BatchGuided>& guided) const;
   /// Throw InputError unless every vehicle has a controller that drives its rotors.

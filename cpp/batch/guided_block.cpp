@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "finally.hpp"
 #include "flat_table.hpp"
 #include "laws/variation.hpp"
 #include "quadcore/control/control_loop.hpp"
@@ -87,7 +88,7 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n, std:
       if (!follower.has_left) log(follower, static_cast<double>(step));
     }
   };
-  try {
+  const auto advance = [&] {
     while (step < n && std::any_of(followers.begin(), followers.end(), flies)) {
       if (step >= next_poll) {
         poll();
@@ -97,11 +98,8 @@ void GuidedBlock::advance(std::vector<Follower>& followers, std::int64_t n, std:
       const auto end = static_cast<double>(std::min({n, logged, next_poll}));
       advance_to(static_cast<std::int64_t>(update(static_cast<double>(step), end)));
     }
-  } catch (...) {
-    finish(followers);
-    throw;
-  }
-  finish(followers);
+  };
+  finally(advance, [&] { finish(followers); });
 }
 
 void GuidedBlock::finish(const std::vector<Follower>& followers) const {
@@ -225,17 +223,14 @@ void follow_apart(Simulation& simulation, const BatchGuide& guide, const std::st
                [&] { controller.command(period, topic, *guide.reference, list_times, speeds); });
     guided.saturated += controller.saturated();
   };
-  try {
+  const auto advance = [&] {
     flight.make_room(n);
     for (std::int64_t left = n; left > 0; left -= steps_between_polls) {
       poll();
       loop.advance(std::min(left, steps_between_polls), call);
     }
-  } catch (...) {
-    finish();
-    throw;
-  }
-  finish();
+  };
+  finally(advance, finish);
 }
 
 }  // namespace quadcore::batch
