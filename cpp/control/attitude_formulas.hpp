@@ -40,8 +40,7 @@ QUADCORE_LAW Quaternion<double> quaternion_of_large_turn(const Matrix3<double>& 
 template <class T>
 QUADCORE_LAW Quaternion<T> quaternion_of(const Matrix3<T>& R) {
   const T trace = R.xx + (R.yy + R.zz);
-  const T square = trace + 1, root = laws::square_root(square);
-  const T by = root * (0.5 / square);  // need not wait for the root, as in inverse_root()
+  const T root = laws::square_root(trace + 1), by = 0.5 * laws::inverse_root(trace + 1);
   Quaternion<T> q{(R.zy - R.yz) * by, (R.xz - R.zx) * by, (R.yx - R.xy) * by, 0.5 * root};
   if (__builtin_expect(!laws::any(trace <= 0), 1)) return q;
   if constexpr (laws::lanes_of<T> == 1) {
