@@ -60,14 +60,17 @@ def test_a_controller_is_closed_once_after_each_flight(fault, raised):
     assert controller.calls == ["reset", "close"] * 2
 
 
-def test_a_controller_that_fails_in_reset_is_closed():
-    controller = Recorder()
-
+def fail_in_reset(controller):
     def fail(simulation):
         controller.calls.append("reset")
         raise RuntimeError("no autopilot")
 
     controller.reset = fail
+    return controller
+
+
+def test_a_controller_that_fails_in_reset_is_closed():
+    controller = fail_in_reset(Recorder())
     with pytest.raises(RuntimeError, match="no autopilot"):
         quadrotor().run(0.01, controller=controller)
     assert controller.calls == ["reset", "close"]
@@ -94,23 +97,12 @@ class VectorRecorder(Recorder):
         return np.tile(super().__call__(t, state, reference), (len(state.position), 1))
 
 
-def fail_in_reset():
-    controller = VectorRecorder()
-
-    def fail(simulation):
-        controller.calls.append("reset")
-        raise RuntimeError("no autopilot")
-
-    controller.reset = fail
-    return [controller]
-
-
 @pytest.mark.parametrize(
     ("make", "calls"),
     [
         (lambda: [VectorRecorder()], ["reset", "close"]),
         (lambda: [VectorRecorder(ValueError("broken"))], ["reset", "close"]),
-        (fail_in_reset, ["reset", "close"]),
+        (lambda: [fail_in_reset(VectorRecorder())], ["reset", "close"]),
         (lambda: [Recorder()], []),
         (lambda: [VectorRecorder() for _ in range(3)], []),
     ],
@@ -126,10 +118,10 @@ def test_a_batch_closes_each_controller_that_it_resets(make, calls):
 
 
 @pytest.mark.parametrize(
-    "make", [fail_in_reset, lambda: [VectorRecorder()]], ids=["fails", "flies"]
+    "make", [lambda: fail_in_reset(VectorRecorder()), VectorRecorder], ids=["fails", "flies"]
 )
 def test_a_group_of_seeds_closes_the_controller_that_it_resets(make):
-    (controller,) = make()
+    controller = make()
     plan = qc.FlightPlan.of(
         "quadrotor", engine="eigen", duration=0.01, controller=controller, reference=HOVERING
     )
