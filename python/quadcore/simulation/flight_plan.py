@@ -41,7 +41,7 @@ from .log import Log
 from .reference_pilot import PluginPilot
 from .scenarios import Scenario, add_controller, add_wind
 from .scenarios import read_scenario as read_scenario
-from .simulation import Simulation, check_start, make_simulation
+from .simulation import Simulation, check_start, find_start, make_simulation
 from .state import State
 
 if TYPE_CHECKING:
@@ -299,8 +299,7 @@ class FlightPlan:
         check_start(self.on_reference, self.reference)
         if not self.on_reference or self.reference is None:
             return None
-        spins = self.controller.spins if isinstance(self.controller, BuiltInController) else ()
-        return references.start(simulation, self.reference, spins)
+        return find_start(simulation, self.controller, self.reference)
 
     def pilot(
         self, simulation: Simulation, timed: bool = False

@@ -244,23 +244,25 @@ class _WorkerPool:
             _join(process)
 
     def _replace(self) -> bool:
-        """Start a process with the next case; return False if there is none, or it cannot start."""
-        for index, case in itertools.islice(self._queue, 1):
-            try:
-                connection, process = _start(self._task, list(self.busy))
-            except OSError as error:
-                if not self.busy:
-                    raise QuadcoreError(f"no process can be started: {error.strerror}") from error
-                self._queue = itertools.chain([(index, case)], self._queue)
-                return False
-            self._send(connection, process, index, case)
-            return True
-        return False
+        """Start a process with the next case; return False without a case or if it cannot start."""
+        case = next(self._queue, None)
+        if case is None:
+            return False
+        try:
+            connection, process = _start(self._task, list(self.busy))
+        except OSError as error:
+            if not self.busy:
+                raise QuadcoreError(f"no process can be started: {error.strerror}") from error
+            self._queue = itertools.chain([case], self._queue)
+            return False
+        self._send(connection, process, *case)
+        return True
 
     def _give(self, connection: Connection, process: Any) -> None:
         """Send the next case to an idle process, which ends if no case remains."""
-        for index, case in itertools.islice(self._queue, 1):
-            self._send(connection, process, index, case)
+        case = next(self._queue, None)
+        if case is not None:
+            self._send(connection, process, *case)
             return
         connection.close()
         _join(process)
